@@ -169,7 +169,8 @@ class Copies:
         if isinstance(value, np.vectorize):
             return vectorized(self.value(value.pyfunc))
         if _root(type(value)) in _LIBRARIES:
-            return self._deep(value)
+            is_fixed = isinstance(value, tuple) and all(isinstance(one, _FIXED) for one in value)
+            return value if is_fixed else self._deep(value)
         self._depth += 1
         try:
             return self._whole(value)

@@ -1,7 +1,7 @@
 """Numbers with names: variables that only events change, and signs of surfaces."""
 
 from collections import namedtuple
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from keyword import iskeyword
 from math import prod
 from typing import Any, TypeAlias
@@ -48,6 +48,20 @@ class Named:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         return self._tuple(*values)
+
+    @property
+    def labels(self) -> list[str]:
+        """A name for each number."""
+        shapes = self.shapes.items()
+        return ["_".join([name, *map(str, at)]) for name, shape in shapes for at in np.ndindex(shape)]
+
+    def tuple_of(self, parts: Sequence[Any], view: type[NDArray[Any]]) -> Any:
+        """The named tuple of numbers of another kind, in arrays of this kind."""
+        flat = np.empty((1, len(parts)), dtype=object)
+        flat[0] = parts
+        flat.setflags(write=False)
+        rows = self.columns(flat).values()
+        return self._tuple(*(part[0] if part.ndim == 1 else part[0].view(view) for part in rows))
 
     def columns(self, rows: NDArray[Any]) -> dict[str, NDArray[Any]]:
         """The columns of rows of numbers by their names, shape (k, ...)."""

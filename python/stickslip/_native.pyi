@@ -73,6 +73,7 @@ class Tape:
         parameters: list[str],
         start: tuple[int, float, list[int]],
         modes: list[tuple[str, list[int], list[dict[str, Any]]]],
+        held: list[str],
     ) -> FormulaSystem: ...
 
 @final

@@ -1,7 +1,7 @@
 """Systems of Python's functions that are recorded as formulas, run, and compared."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -12,7 +12,7 @@ from stickslip._compiled import Compiled, Function
 from stickslip._derivatives import Rerun
 from stickslip._recording import Tape
 from stickslip._solutions import DenseOutput, Solution
-from stickslip._symbols import CannotRecord, Symbol
+from stickslip._symbols import CannotRecord, Symbol, Symbols, array_of
 from stickslip._systems import Guard, Mode, _Clock, _Source
 from stickslip.formulas import FormulaSystem
 
@@ -40,15 +40,22 @@ class Recorded:
     ) -> None:
         if not state.size:
             raise CannotRecord("there is no state")
-        if table.variables or table.signs:
-            raise CannotRecord("the system has variables or surfaces")
+        if table.signs:
+            raise CannotRecord("the system has surfaces")
+        if table.variables and (beginning is not None or values is None):
+            raise CannotRecord("the system has variables")
         if table.apart:
             raise CannotRecord("guards of several modes are counted until the run ends")
         self.table, self.state, self.start = table, state, begin[1]
         self.tape = Tape()
         native = self.tape.native
         symbols = [Symbol(self.tape, native.parameter(place)) for place in range(len(names))]
-        self.args = (*symbols, *table.args)
+        #: The variables, which follow the components of the state.
+        held = table.variables.flat.tolist()
+        places = range(state.size, state.size + len(held))
+        self.held = [Symbol(self.tape, native.component(place)) for place in places]
+        variables = (table.variables.tuple_of(self.held, Symbols),) if held else ()
+        self.args = (*variables, *symbols, *table.args)
         self.values = list(values) if values is not None else None if names else []
         self.beginning = beginning
         #: For each mode, functions with their formulas: the right-hand side, guards, and resets.
@@ -57,14 +64,17 @@ class Recorded:
         self.resets: list[dict[int, tuple[str, Function]]] = []
         self.transitions: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         self.rests: list[dict[int, tuple[str, Callable[..., Any], int, list[int] | None]]] = []
+        self.sets: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         modes = [self.mode(mode) for mode in table.system_modes]
         if beginning is None:
             first = [native.constant(value) for value in state.tolist()]
         else:
             first = self.formulas("start", beginning, state.size, (self.start, state.tolist()))
+        first += [native.constant(value) for value in held]
         self.first, self.from_start = begin[0], first
         given = (begin[0], self.start, first)
-        self.system = FormulaSystem._of(native.system(list(names), given, modes))
+        labels = table.variables.labels
+        self.system = FormulaSystem._of(native.system(list(names), given, modes, labels))
 
     def formulas(
         self,
@@ -107,6 +117,8 @@ class Recorded:
         self.resets.append({})
         self.transitions.append({})
         self.rests.append({})
+        self.sets.append({})
+        slopes = slopes + [self.tape.native.constant(0.0)] * len(self.held)
         rules: list[dict[str, Any]] = []
         for source in [*self.table.events, *mode._sources]:
             values: list[int | None] = [None] * len(source.guards)
@@ -124,8 +136,6 @@ class Recorded:
         """A guard for the native module."""
         mode, slopes, source = of
         about = f"guard {guard.name!r} of mode {mode.name!r}"
-        if guard.sets is not None:
-            raise CannotRecord(f"{about} has sets")
         after, to, branch = None, self.table.target(guard.to, about), None
         if guard.transition is not None:
             what = f"the transition of {about}"
@@ -139,6 +149,17 @@ class Recorded:
             what = f"the reset of {about}"
             after = self.formulas(what, guard.reset, self.state.size)
             self.resets[-1][place] = (what, guard.reset)
+        if guard.sets is not None:
+            what = f"sets of {about}"
+            if not self.held:
+                raise CannotRecord(f"{what}: the system has no variables")
+            changed = self.changed(what, guard.sets)
+            self.sets[-1][place] = (what, self.table.variables.setter(guard.sets, what))
+            if after is None:
+                after = [self.tape.native.component(i) for i in range(self.state.size)]
+            after = after + changed
+        else:
+            after = self.with_held(after)
         order = int(guard.from_zero)
         if self.table.plain and not order and value is not None and self.values is not None:
             state = self.state.tolist()
@@ -179,6 +200,34 @@ class Recorded:
             raise CannotRecord(f"{what}: it returns a state of {len(state)} components")
         return choice, None if state is None else [symbol.id for symbol in state]
 
+    def changed(self, what: str, sets: Any) -> list[int]:
+        """The formulas of the variables where some are set."""
+        variables = self.table.variables
+
+        def numbers(found: Any) -> list[Symbol]:
+            if not isinstance(found, Mapping):
+                raise CannotRecord("it returns no mapping")
+            variables._expect(found, what)
+            parts: list[Symbol] = []
+            for name, old in variables.columns(np.arange(len(self.held)).reshape(1, -1)).items():
+                value = np.asarray(array_of(found.get(name, 0.0)), dtype=object)
+                if name not in found:
+                    parts += [self.held[place] for place in old.reshape(-1)]
+                elif value.shape != variables.shapes[name]:
+                    raise CannotRecord(f"{name!r} gets shape {value.shape}")
+                else:
+                    parts += map(self.tape.number, value.reshape(-1))
+            return parts
+
+        if not callable(sets):
+            return [symbol.id for symbol in numbers(sets)]
+        record = partial(self.tape.record, n=self.state.size, args=self.args, numbers=numbers)
+        return [symbol.id for symbol in self.recorded(what, sets, record)]
+
+    def with_held(self, after: list[int] | None) -> list[int] | None:
+        """Formulas of a state, with those of variables that stay."""
+        return None if after is None else after + [symbol.id for symbol in self.held]
+
     def rest(self, guard: Guard, what: str, place: int) -> tuple[int, list[int] | None]:
         """What follows where events accumulate."""
         if isinstance(guard.rest, str | Mode):
@@ -190,6 +239,7 @@ class Recorded:
         if isinstance(choice, tuple):
             raise CannotRecord(f"{what}: it chooses between modes")
         to = len(self.rests) - 1 if choice is None else choice
+        after = self.with_held(after)
         self.rests[-1][place] = (what, self.table.transition(guard.rest, what), to, after)
         return to, after
 
@@ -203,12 +253,13 @@ class Recorded:
         """Runs the system, and compares the formulas with their functions."""
         first, start, end = begin
         settings = {name: value for name, value in settings.items() if name != "guard_scale"}
-        given = (first, start, self.state.tolist())
+        given = (first, start, self.state.tolist() + self.table.variables.flat.tolist())
         values = self.values or []
         found = self.system._native.run(values, given, end, settings, times)
         self.compare(found, tuple(values))
         rerun: Rerun = (values, given, end, settings)
-        return self.system._solution(found, dense, rerun, self.table.event_names)
+        names, variables = self.table.event_names, self.table.variables
+        return self.system._solution(found, dense, rerun, names, variables)
 
     def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that are not what their functions return with values of parameters."""
@@ -222,29 +273,34 @@ class Recorded:
         for t, mode, y in zip(times.tolist(), modes[chosen].tolist(), dense(times).T, strict=True):
             self.compare_at(mode, t, y, values)
         n = self.state.size
-        before = found["event_before"].reshape(-1, n)
-        after = found["event_after"].reshape(-1, n)
+        before = found["event_before"].reshape(-1, n + len(self.held))
+        after = found["event_after"].reshape(-1, n + len(self.held))
         events = zip(found["event_from"], found["event_guards"], strict=True)
         for row, (mode, guard) in enumerate(list(events)[:MOST_PLACES]):
             if guard in self.resets[mode] and not (before[row] == after[row]).all():
                 what, reset = self.resets[mode][guard]
                 at = (float(found["event_times"][row]), before[row])
-                self.same(what, reset, at, values, after[row].tolist())
+                self.same(what, reset, at, values, after[row, :n].tolist())
+            if guard in self.sets[mode] and not (before[row] == after[row]).all():
+                what, setter = self.sets[mode][guard]
+                at = (float(found["event_times"][row]), before[row])
+                self.same(what, setter, at, values, after[row, n:].tolist())
             if guard in self.rests[mode]:
                 what, rest, rests_in, formulas = self.rests[mode][guard]
                 at = (float(found["event_times"][row]), after[row])
-                to, state = rest(at[0], after[row].copy(), *values, *self.table.args)
+                to, state = self.call(rest, at, values)
                 if (mode if to is None else to) != rests_in:
                     raise CannotRecord(f"{what}: at t = {at[0]!r} it leads to another mode")
                 if state is not None and formulas is not None:
                     given = partial(lambda state, *_: state, state)
                     native = self.tape.native
+                    formulas = formulas[:n]
                     now = native.evaluate(formulas, at[0], after[row].tolist(), list(values))
                     self.same(what, given, at, values, now)
             if guard in self.transitions[mode] and found["outcome"] != "ended_by_guard":
                 what, transition = self.transitions[mode][guard]
                 t, y = float(found["event_times"][row]), before[row]
-                to, state = transition(t, y.copy(), *values, *self.table.args)
+                to, state = self.call(transition, (t, y), values)
                 if to is not None and to != found["event_to"][row]:
                     name = self.table.names[found["event_to"][row]]
                     raise CannotRecord(
@@ -253,13 +309,13 @@ class Recorded:
                     )
                 if state is not None:
                     given = partial(lambda state, *_: state, state)
-                    self.same(what, given, (t, y), values, after[row].tolist())
+                    self.same(what, given, (t, y), values, after[row, :n].tolist())
 
     def compare_start(self, values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that differ at the start."""
-        at = (self.start, self.state)
+        at = (self.start, np.append(self.state, self.table.variables.flat))
         native = self.tape.native
-        found = native.evaluate(self.from_start, self.start, self.state.tolist(), list(values))
+        found = native.evaluate(self.from_start, self.start, at[1].tolist(), list(values))
         if self.beginning is not None:
             self.same("start", self.beginning, at, values, found)
         self.compare_at(self.first, self.start, np.array(found), values)
@@ -271,6 +327,17 @@ class Recorded:
             found = self.tape.native.evaluate(formulas, t, y.tolist(), list(values))
             self.same(what, function, (t, y), values, found)
 
+    def call(
+        self,
+        function: Callable[..., Any],
+        at: tuple[float, NDArray[np.float64]],
+        values: tuple[float, ...],
+    ) -> Any:
+        """What a function returns at a time, and at a state with variables behind it."""
+        n = self.state.size
+        held = (self.table.variables.named(at[1][n:]),) if self.held else ()
+        return function(at[0], at[1][:n].copy(), *held, *values, *self.table.args)
+
     def same(
         self,
         what: str,
@@ -280,11 +347,11 @@ class Recorded:
         recorded: list[float],
     ) -> None:
         """Refuses a function that returns something else than its formulas."""
-        t, y = at
+        t, _ = at
         assert not isinstance(function, Compiled)
         try:
             with np.errstate(all="ignore"):
-                found = function(t, y.copy(), *values, *self.table.args)
+                found = self.call(function, at, values)
                 returned = np.asarray(found, dtype=float).reshape(-1).tolist()
         except Exception as error:
             # Without formulas it says so itself, if it is called there.

@@ -33,13 +33,15 @@ class Tape(Decisions):
         n: int,
         args: tuple[Any, ...],
         at: tuple[float, Sequence[float]] | None = None,
+        numbers: Callable[[Any], list[Symbol]] | None = None,
     ) -> list[Symbol]:
         """The numbers that function(t, y, *args) returns, for y of shape (n,).
 
-        at: time and state, if these are numbers.
+        at: time and state, if these are numbers. numbers: what these are in a result that is no
+        list of them.
         """
-        ways = self.ways(function, n, args, at)
-        return self._merged([(way, self._numbers(found)) for way, found in ways], 0)
+        ways, numbers = self.ways(function, n, args, at), numbers or self._numbers
+        return self._merged([(way, numbers(found)) for way, found in ways], 0)
 
     def choice(
         self, function: Callable[..., Any], n: int, args: tuple[Any, ...], names: list[str]

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
+from stickslip._names import Named
 
 if TYPE_CHECKING:
     from stickslip.formulas import FormulaSystem
@@ -195,6 +196,33 @@ def _place_types(width: int) -> tuple["np.dtype[np.void]", ...]:
     place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
     rests = [place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
     return np.dtype([*place, ("margin", "f8")]), np.dtype(place), np.dtype(rests)
+
+
+#: Columns by the names of variables.
+Columns: TypeAlias = dict[str, NDArray[np.float64]]
+
+
+def variable_columns(variables: Named) -> list[Any]:
+    """The column of events for variables, if there are any."""
+    shapes = variables.shapes.items()
+    return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
+
+
+def with_variables(found: dict[str, Any], variables: Named) -> tuple[list[Any], Columns, Columns]:
+    """Takes the variables, which are the last components, out of the states that were `found`. The
+    result is their column of events, their values at the points, and those behind events."""
+    held = variables.flat.size
+    if not held:
+        return [], {}, {}
+    size = found["end_state"].size
+    of: dict[str, Columns] = {}
+    for name in ("y", "event_before", "event_after", "coefficients"):
+        if name in found:
+            rows = found[name].reshape(-1, size)
+            found[name] = np.ascontiguousarray(rows[:, :-held]).reshape(-1)
+            of[name] = variables.columns(rows[:, size - held :])
+    found["end_state"] = found["end_state"][:-held]
+    return variable_columns(variables), of["y"], of["event_after"]
 
 
 def event_array(

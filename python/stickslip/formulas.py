@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
+from stickslip._names import Named
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
-from stickslip._solutions import Names, Solution, event_array, solution_of
+from stickslip._solutions import Names, Solution, event_array, solution_of, with_variables
 from stickslip.collisions import _threads
 from stickslip.studies import Study, _study
 
@@ -207,14 +208,23 @@ class FormulaSystem:
         dense: bool,
         rerun: Rerun,
         event_names: list[str] | None = None,
+        variables: Named | None = None,
     ) -> Solution:
         modes, labels, labelled = self._names
         names = (modes, labels, [*labelled] if event_names is None else event_names)
-        events = event_array(found, found["end_state"].size, names, [])
-        start = found["start_time"]
-        again = (self, rerun)
+        extra, held, behind = with_variables(found, variables or Named("variables", {}))
+        events = event_array(found, found["end_state"].size, names, extra)
+        for name, values in behind.items():
+            events["variables"][name] = values
         return solution_of(
-            found, events, names, start=start, dense=dense, guards="decided", again=again
+            found,
+            events,
+            names,
+            start=found["start_time"],
+            dense=dense,
+            guards="decided",
+            variables=held,
+            again=(self, rerun),
         )
 
     @cached_property

@@ -17,7 +17,7 @@ from stickslip import _native
 from stickslip._compiled import Compiled, Function, _number
 from stickslip._recorded import Recorded
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
-from stickslip._solutions import Solution, event_array, solution_of
+from stickslip._solutions import Solution, event_array, solution_of, variable_columns
 from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
@@ -385,10 +385,7 @@ class _Table:
         guards = [self.places[mode] for mode in modes]
         variables = self.variables.columns(found["seen_variables"].reshape(len(modes), -1))
         sides = self.signs.columns(found["seen_sides"].reshape(len(modes), -1))
-        extra: list[Any] = []
-        if self.variables:
-            shapes = self.variables.shapes.items()
-            extra += [("variables", [(name, "f8", shape) for name, shape in shapes])]
+        extra = variable_columns(self.variables)
         if self.signs:
             signs = [(name, "i1") for name in self.signs.names]
             extra += [("sides_from", signs), ("sides_to", signs), ("unique", "?")]

@@ -37,6 +37,60 @@ def test_a_heater_switches_at_its_times():
     assert found.sides == {} and set(found.mode) == {"room"}
 
 
+def test_functions_of_variables_are_recorded():
+    found = solve(heater(), (0.0, 10.0), [0.0], dense_output=True)
+    sampled = solve(heater(), (0.0, 10.0), [0.0], record=False)
+    assert found.guards == "decided" and not sampled.decided
+    assert found.events.dtype == sampled.events.dtype and found.y.shape[0] == 1
+    for name in ("guard", "variables"):
+        assert np.array_equal(found.events[name], sampled.events[name])
+    assert np.abs(found.events["time"] - sampled.events["time"]).max() < 1e-9
+    assert found.sol(1.0).shape == (1,)
+    assert abs(found.sol(1.0)[0] - 3.0 * (1.0 - math.exp(-1.0))) < 1e-9
+    assert found.variables["count"].shape == found.t.shape
+    assert "discrete count = 0" in found.system.text
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-6, 1e-9])
+def test_a_dip_is_found_as_long_as_it_is_armed(width):
+    system = HybridSystem(variables={"armed": 1.0, "seen": [0.0, 0.0]})
+    line = system.mode("line", lambda t, y, now: [1.0])
+
+    def sets(t, y, now):
+        seen = now.seen.copy()
+        seen[1] = t
+        return {"armed": 0.0, "seen": seen}
+
+    def dip(t, y, now):
+        return 0.5 - np.exp(-(((y[0] - 7.123) / width) ** 2)) if now.armed > 0.5 else 1.0
+
+    line.guard("dip", dip, direction="falling", sets=sets)
+    found = solve(system, (0.0, 10.0), [0.0], record=True)
+    exact = 7.123 - width * math.sqrt(math.log(2.0))
+    assert found.events.size == 1 and abs(found.events["time"][0] - exact) < 1e-13
+    assert found.variables["seen"][-1].tolist() == [0.0, found.events["time"][0]]
+
+
+def test_what_sets_variables_otherwise_than_by_formulas_is_refused():
+    def with_sets(sets):
+        system = HybridSystem(variables={"on": 1.0, "pair": [0.0, 1.0]})
+        line = system.mode("line", lambda t, y, now: [now.on])
+        line.guard("one", lambda t, y, now: 1.0 - y[0], direction="falling", sets=sets)
+        return system
+
+    calls = []
+
+    def counts(t, y, now):
+        calls.append(t)
+        return {"on": float(len(calls))}
+
+    wrong = [counts, lambda t, y, now: {"on": float(np.random.default_rng().random())}]
+    wrong += [lambda t, y, now: {"pair": now.on}, lambda t, y, now: [0.0]]
+    for sets in wrong:
+        with pytest.raises(ValueError, match="record = True, but sets of guard 'one'"):
+            solve(with_sets(sets), (0.0, 2.0), [0.0], record=True)
+
+
 def test_units_need_no_modes_of_their_own():
     n = 40
     rates = 1.0 + np.arange(n) / n
@@ -102,7 +156,8 @@ def test_compiled_functions_find_variables_behind_the_state():
         out[0] = 3.0 * y[1] - y[0]
 
     compiled = solve(heater(Compiled(field)), (0.0, 10.0), [0.0])
-    assert np.array_equal(compiled.y, solve(heater(), (0.0, 10.0), [0.0]).y)
+    sampled = solve(heater(), (0.0, 10.0), [0.0], record=False)
+    assert np.array_equal(compiled.y, sampled.y)
 
 
 def test_families_have_variables():

@@ -154,20 +154,22 @@ impl Tape {
     }
 
     /// A system of formulas of this tape: names of parameters; the first mode, the time and the
-    /// state at the start; and modes with slopes and rules.
+    /// state at the start; and modes with slopes and rules. Only rules change the `held` last
+    /// components, which have these names.
     fn system(
         &self,
         parameters: Vec<String>,
         start: (usize, f64, Vec<u32>),
         modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
+        held: Vec<String>,
     ) -> PyResult<FormulaSystem> {
         let mut graph = self.graph().clone();
         let (first, time, start) = start;
         let start = all_known(&graph, &start)?;
-        let component = |(place, &start): (usize, &Formula)| Component {
-            name: format!("y{place}"),
-            start,
-            discrete: false,
+        let n = start.len().saturating_sub(held.len());
+        let component = |(place, &start): (usize, &Formula)| match place.checked_sub(n) {
+            None => Component { name: format!("y{place}"), start, discrete: false },
+            Some(place) => Component { name: held[place].clone(), start, discrete: true },
         };
         let components = start.iter().enumerate().map(component).collect();
         let parameter = |name| Parameter { name, value: 0.0, range: None };
@@ -265,12 +267,14 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
     if one.max(other) >= modes {
         return Err(bad_input(format!("there is no mode {}", one.max(other))));
     }
+    let here: Vec<Formula> = (0..).take(n).map(|place| graph.component(place)).collect();
     let changes = |after: Option<Vec<u32>>| -> PyResult<Vec<(usize, Formula)>> {
         let after = all_known(graph, &after.unwrap_or_default())?;
         if after.len() > n {
             return Err(bad_input("a reset has another number of components"));
         }
-        Ok(after.into_iter().enumerate().collect())
+        let changed = |&(place, formula): &(usize, Formula)| formula != here[place];
+        Ok(after.into_iter().enumerate().filter(changed).collect())
     };
     let rest = match row.rest {
         Some((next, _)) if next >= modes => {
