@@ -1,9 +1,8 @@
 //! Guards that are zero where a step ends at which the run must not go on without them: at the end
 //! of the span, at the time of a clock, and at an event of another guard.
 
-use crate::events::event::{Crossed, Event, only};
+use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
-use crate::lists::List;
 use crate::method::{StepOf, Store};
 use crate::system::System;
 
@@ -142,17 +141,8 @@ impl<S: System> Examination<'_, S> {
         crossed: Crossed,
         step: &StepOf<S::State>,
     ) -> Event<S> {
-        let count = self.phase.count();
-        Event {
-            guard,
-            crossed: only(count, guard, crossed),
-            simultaneous: List::of(count, false),
-            elapsed: step.h,
-            latest: None,
-            state: step.y1.clone(),
-            residual: 0.0,
-            beyond: (1.0 + REACH) * step.h,
-            step: step.clone(),
-        }
+        let (of, at) = ((guard, self.phase.count()), (step.h, step.y1.clone()));
+        let beyond = (1.0 + REACH) * step.h;
+        Event { beyond, ..Event::alone(of, crossed, at, step.clone()) }
     }
 }

@@ -46,6 +46,20 @@ pub(crate) struct Event<S: System> {
 }
 
 impl<S: System> Event<S> {
+    /// The event of one guard, of `count`, at the end of `step`, which begins at the start of the
+    /// step of the run.
+    pub(crate) fn alone(
+        (guard, count): (usize, usize),
+        crossed: Crossed,
+        (elapsed, state): (f64, S::State),
+        step: StepOf<S::State>,
+    ) -> Self {
+        let simultaneous = List::of(count, false);
+        let crossed = only(count, guard, crossed);
+        let (latest, residual, beyond) = (None, 0.0, elapsed);
+        Self { guard, crossed, simultaneous, elapsed, state, latest, residual, beyond, step }
+    }
+
     /// How the guard that acts first crosses zero.
     pub(crate) fn own(&self) -> Crossed {
         self.crossed[self.guard].unwrap_or(Crossed::AT_ONCE)

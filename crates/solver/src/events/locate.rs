@@ -6,11 +6,10 @@
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
 use crate::events::aside::{Aside, resolution};
-use crate::events::event::{Crossed, Event, only};
+use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
 use crate::events::status::Crossing;
-use crate::lists::List;
 use crate::method::{Method, StepOf, Store};
 use crate::system::{Room, System};
 
@@ -52,16 +51,10 @@ impl<S: System> Examination<'_, S> {
         let (mut seen_low, mut seen_high) = (false, false);
         let beyond = crossing.bracket.high * step.h;
         let (count, sign) = (self.phase.count(), crossing.sign);
-        let event = |at: Landing<S::State>, step: StepOf<S::State>| Event {
-            guard,
-            crossed: only(count, guard, Crossed { slope: at.slope.abs(), jump: at.jump, sign }),
-            simultaneous: List::of(count, false),
-            elapsed: at.elapsed,
-            latest: None,
-            state: at.state,
-            residual: at.residual.abs(),
-            beyond,
-            step,
+        let event = |at: Landing<S::State>, step: StepOf<S::State>| {
+            let crossed = Crossed { slope: at.slope.abs(), jump: at.jump, sign };
+            let alone = Event::alone((guard, count), crossed, (at.elapsed, at.state), step);
+            Event { residual: at.residual.abs(), beyond, ..alone }
         };
         let start = self.phase.values[guard];
         let at_start = |residual: f64, slope: f64| {
