@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numba import cfunc, types
 
+import stickslip
 from stickslip import Compiled, Guard, HybridFamily, HybridSystem, solve
 
 POINTER = types.CPointer(types.float64)
@@ -89,6 +90,26 @@ def test_what_sets_variables_otherwise_than_by_formulas_is_refused():
     for sets in wrong:
         with pytest.raises(ValueError, match="record = True, but sets of guard 'one'"):
             solve(with_sets(sets), (0.0, 2.0), [0.0], record=True)
+
+
+@pytest.mark.parametrize("names", [["y0"], ["t"], ["pi", "mode"], ["y0", "y1"], ["sin"], ["y0_"]])
+def test_variables_may_be_called_as_anything_else(names):
+    system = HybridSystem(variables={name: 1.0 + place for place, name in enumerate(names)})
+    mode = system.mode("mode", lambda t, y, now: [now[0] + 0.0 * y[0], -y[1]])
+    mode.guard(
+        "one",
+        lambda t, y, now: 1.5 - y[0],
+        direction="falling",
+        reset=lambda t, y, now: [0.0, y[1] + 1.0],
+        sets=lambda t, y, now: {names[-1]: getattr(now, names[-1]) + 1.0},
+    )
+    found = solve(system, (0.0, 5.0), [0.0, 1.0], record=True)
+    sampled = solve(system, (0.0, 5.0), [0.0, 1.0], record=False)
+    assert np.abs(found.events["time"] - sampled.events["time"]).max() < 1e-9
+    assert np.array_equal(found.events["variables"], sampled.events["variables"])
+    # The text is that of the same system, under other names.
+    again = stickslip.system(found.system.text).solve((0.0, 5.0))
+    assert np.abs(again.t_events[0] - found.t_events[0]).max() < 1e-12
 
 
 def test_units_need_no_modes_of_their_own():
