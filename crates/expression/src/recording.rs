@@ -66,8 +66,8 @@ pub const fn outcome_name(outcome: Outcome) -> &'static str {
     }
 }
 
-#[derive(Default)]
-struct Recorder {
+struct Recorder<'a> {
+    stops: &'a dyn Fn() -> bool,
     events: Vec<DynamicSwitch<usize>>,
     touches: Vec<Grazing<usize>>,
     poles: Vec<Pole<usize>>,
@@ -76,8 +76,12 @@ struct Recorder {
     steps: Vec<StoredStep>,
 }
 
-impl DynamicObserver<usize> for Recorder {
+impl DynamicObserver<usize> for Recorder<'_> {
     const WANTS_SEGMENTS: bool = true;
+
+    fn stops(&self) -> bool {
+        (self.stops)()
+    }
 
     fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
         self.events.push(event.to_switch());
@@ -126,14 +130,29 @@ impl Runnable {
         end: f64,
         options: &Options,
     ) -> Result<Recording, RunError> {
+        self.record_unless(&|| false, method, end, options)
+    }
+
+    /// As [`Self::record`], and stops where `stops`, which is called after every step and every
+    /// event, returns `true`.
+    ///
+    /// # Errors
+    /// [`RunError`], as of a run of any system.
+    pub fn record_unless(
+        &self,
+        stops: &dyn Fn() -> bool,
+        method: EmbeddedPair,
+        end: f64,
+        options: &Options,
+    ) -> Result<Recording, RunError> {
         if let Some(branched) = self.with_branches()
-            && let Ok(mut found) = branched.record_as_it_is(method, end, options)
+            && let Ok(mut found) = branched.record_as_it_is(stops, method, end, options)
             && found.is_regular()
         {
             found.take_out(Hidden { groups: 1, own: self.state.len() }, &self.rules());
             return Ok(found);
         }
-        self.record_as_it_is(method, end, options)
+        self.record_as_it_is(stops, method, end, options)
     }
 
     /// The numbers of rules of all modes.
@@ -144,14 +163,23 @@ impl Runnable {
     /// Records a run whose branches are no events.
     pub(crate) fn record_as_it_is(
         &self,
+        stops: &dyn Fn() -> bool,
         method: EmbeddedPair,
         end: f64,
         options: &Options,
     ) -> Result<Recording, RunError> {
-        let mut recorder = Recorder::default();
+        let mut recorder = Recorder {
+            stops,
+            events: Vec::new(),
+            touches: Vec::new(),
+            poles: Vec::new(),
+            preempted: Vec::new(),
+            rests: Vec::new(),
+            steps: Vec::new(),
+        };
         let start = self.start();
         let run = run_dynamic_with(method, self, start, end, options, &mut recorder)?;
-        let Recorder { events, touches, poles, preempted, rests, steps } = recorder;
+        let Recorder { events, touches, poles, preempted, rests, steps, .. } = recorder;
         let (state, mode, start) = (start.state.to_vec(), start.mode, start.s);
         Ok(Recording { run, events, touches, poles, rests, preempted, start, state, mode, steps })
     }

@@ -11,7 +11,7 @@ use stickslip_model::{Collision, Contact, Engine, Law, Regime};
 
 use crate::engines::{Choice, LawChoice};
 use crate::failure::{Failure, bad_input};
-use crate::parallel::{PIECE, Threads};
+use crate::parallel::{Threads, in_pieces};
 
 /// Parameters of collisions: κ, ψ and damping, each with one value for all or for each.
 pub struct Points {
@@ -82,10 +82,10 @@ impl<'py> Pairs<'py> {
         let values = PyArray1::zeros(py, self.count(), false);
         let mut written = values.readwrite();
         let mut columns = [const { Vec::new() }; 2];
-        for (index, found) in written.as_slice_mut()?.chunks_mut(PIECE).enumerate() {
+        let written_values = written.as_slice_mut()?;
+        in_pieces(py, self.count(), |piece| {
             // Other threads may write to the arrays, so that pieces are copied. The same memory
             // again and again is quicker than much new one.
-            let piece = index * PIECE..index * PIECE + found.len();
             for (column, array) in columns.iter_mut().zip(&self.0) {
                 let view = array.as_array();
                 let part = view.slice(s![piece.clone()]);
@@ -95,13 +95,14 @@ impl<'py> Pairs<'py> {
                     None => column.extend(part),
                 }
             }
-            threads.fill(py, found, |first, found| {
+            threads.fill(py, &mut written_values[piece], |first, found| {
                 let [x, y] = columns.each_ref().map(|column| &column[first..]);
                 for ((found, &x), &y) in found.iter_mut().zip(x).zip(y) {
                     *found = value(x, y);
                 }
-            })?;
-        }
+            });
+            Ok(())
+        })?;
         drop(written);
         Ok(values)
     }

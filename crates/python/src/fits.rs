@@ -4,14 +4,14 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use serde_json::to_string;
 use stickslip_plane::Range;
-use stickslip_plane::progress::SILENT;
+use stickslip_plane::progress::Report;
 use stickslip_practice::fit::{self, Bodies, Column, FitError, Free, Settings, Values};
 
 use crate::arrays::{expect_equal, numbers};
+use crate::background::watched;
 use crate::engines::LawChoice;
 use crate::failure::{Failure, bad_input, failed};
 use crate::impacts::BodyPair;
-use crate::parallel::Threads;
 
 /// What is fitted, the ranges, ε_n, the level, and whether errors are relative.
 #[derive(FromPyObject)]
@@ -29,6 +29,8 @@ pub struct Fit(fit::Fit);
 impl Fit {
     /// Fits the data in columns, in which NaN is a missing value.
     #[staticmethod]
+    #[pyo3(signature = (columns, bodies, scaled, speed, question, threads, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn make(
         py: Python<'_>,
         columns: Vec<(String, PyReadonlyArray1<'_, f64>)>,
@@ -37,6 +39,7 @@ impl Fit {
         speed: Option<f64>,
         question: Question,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let columns = columns.iter().map(|(name, values)| {
             let values = numbers(values)?.into_iter();
@@ -49,8 +52,8 @@ impl Fit {
         let bodies = bodies.map_or_else(|| scaled.bodies(), |pair| Ok(pair.fitted()))?;
         let data = fit::data(&columns, &rows, speed, bodies.are_scaled()).map_err(bad_input)?;
         let settings = question.settings(Settings::new(bodies, data))?;
-        let pool = Threads::pool(threads)?;
-        let found = py.detach(|| pool.install(|| fit::run(&settings, SILENT)));
+        let work = move |report: Report<'_>| fit::run(&settings, report);
+        let found = watched(py, threads, progress.as_ref(), work)?;
         found.map(Self).map_err(exception)
     }
 

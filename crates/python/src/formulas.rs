@@ -5,11 +5,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Recording, Runnable, SensitivityError, System};
-use stickslip_plane::progress::SILENT;
 use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 
 use stickslip_studies::own_system;
 
+use crate::background::Signals;
 use crate::failure::{bad_input, failed};
 use crate::studies;
 
@@ -184,7 +184,10 @@ impl FormulaSystem {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let (method, options) = settings.checked()?;
-        let found = py.detach(|| runnable.record(method, end, &options));
+        let signals = Signals::default();
+        let stops = || signals.stop();
+        let found = py.detach(|| runnable.record_unless(&stops, method, end, &options));
+        signals.raised()?;
         let found = found.map_err(|error| failed(self.0.explained(&error)))?;
         let columns = columns(py, &self.0, &found, times)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
@@ -195,6 +198,8 @@ impl FormulaSystem {
     }
 
     /// The study of how accurate a run is. `name` is that of the system in titles.
+    #[pyo3(signature = (name, parameters, start, end, threads, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn converge<'py>(
         &self,
         py: Python<'py>,
@@ -203,10 +208,13 @@ impl FormulaSystem {
         start: Start,
         end: Option<f64>,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let settings = own_system::Settings { name, system: self.0.clone(), runnable, end };
-        studies::run(py, threads, || own_system::run(&settings, SILENT))
+        studies::run(py, threads, progress.as_ref(), move |report| {
+            own_system::run(&settings, report)
+        })
     }
 }
 

@@ -9,6 +9,7 @@
 //! `families` (and what they depend on), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
+mod background;
 mod collision;
 mod engines;
 mod failure;

@@ -9,7 +9,7 @@ use stickslip_solver::{DynamicRun, DynamicSwitch};
 
 use crate::failure::bad_input;
 use crate::formulas::{FormulaSystem, Settings, word};
-use crate::parallel::Threads;
+use crate::parallel::{Threads, in_pieces};
 
 /// Runs a system with many parameters, one row of `parameters` for each run, and from many
 /// states, if there are any. Returns columns with an entry for each run, and for each event.
@@ -58,18 +58,14 @@ pub fn run_many<'py>(
     };
     let pool = Threads::pool(threads)?;
     let mut ended = Vec::with_capacity(count);
-    for first in (0..count).step_by(RUNS_AT_ONCE) {
-        let piece = first..count.min(first + RUNS_AT_ONCE);
+    in_pieces(py, count, |piece| {
         ended.extend(
             py.detach(|| pool.install(|| piece.into_par_iter().map(one).collect::<Vec<_>>())),
         );
-        py.check_signals()?;
-    }
+        Ok(())
+    })?;
     rows(py, &system.0, ended, times.map_or(0, |times| times.len()))
 }
-
-/// Runs after which Ctrl-C is looked for.
-const RUNS_AT_ONCE: usize = 1024;
 
 /// A run of many.
 struct Ended {

@@ -1,17 +1,44 @@
 //! Work on many cases: in parallel, without the interpreter's lock, and interruptible.
 
 use std::ops::Range;
+use std::time::Instant;
 
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::background::PAUSE;
 use crate::failure::failed;
 
-/// Cases that one thread computes together.
+/// Cases that one thread computes together, at most.
 const PART: usize = 256;
-/// Cases after which Ctrl-C is looked for.
-pub const PIECE: usize = 1 << 15;
+/// Parts of a piece, at least: threads that are done early take more of them.
+const PARTS: usize = 16;
+/// Cases between two looks for Ctrl-C, at first and at most.
+const PIECE: [usize; 2] = [1 << 8, 1 << 15];
+
+/// Calls `work` on all pieces of `0..count`, in order, and looks for Ctrl-C between them. A piece
+/// takes about [`PAUSE`].
+pub fn in_pieces(
+    py: Python<'_>,
+    count: usize,
+    mut work: impl FnMut(Range<usize>) -> PyResult<()>,
+) -> PyResult<()> {
+    let (mut first, [mut size, most]) = (0, PIECE);
+    while first < count {
+        let (last, begun) = (count.min(first + size), Instant::now());
+        work(first..last)?;
+        py.check_signals()?;
+        size = if begun.elapsed() > PAUSE { (size / 2).max(1) } else { most.min(2 * size) };
+        first = last;
+    }
+    Ok(())
+}
+
+/// The number of cases of a part, in a piece of so many cases.
+fn part_size(cases: usize) -> usize {
+    cases.div_ceil(PARTS).clamp(1, PART)
+}
 
 /// The threads of one call; none where the caller's own is enough.
 pub struct Threads(Option<ThreadPool>);
@@ -39,37 +66,35 @@ impl Threads {
         work: impl Fn(Range<usize>) -> T + Sync,
         mut take: impl FnMut(T) -> PyResult<()>,
     ) -> PyResult<()> {
-        for first in (0..count).step_by(PIECE) {
-            let last = count.min(first + PIECE);
-            let parts = (last - first).div_ceil(PART);
+        in_pieces(py, count, |piece| {
+            let size = part_size(piece.len());
+            let parts = piece.len().div_ceil(size);
             let part = |index: usize| {
-                let start = first + index * PART;
-                work(start..last.min(start + PART))
+                let start = piece.start + index * size;
+                work(start..piece.end.min(start + size))
             };
             let made: Vec<T> = py.detach(|| match &self.0 {
                 Some(pool) => pool.install(|| (0..parts).into_par_iter().map(part).collect()),
                 None => (0..parts).map(part).collect(),
             });
-            made.into_iter().try_for_each(&mut take)?;
-            py.check_signals()?;
-        }
-        Ok(())
+            made.into_iter().try_for_each(&mut take)
+        })
     }
 
-    /// Gives parts of `all`, of at most a [`PIECE`], to `work`, each with the number of its first.
+    /// Gives parts of a piece to `work`, each with the number of its first.
     pub fn fill<T: Send>(
         &self,
         py: Python<'_>,
-        all: &mut [T],
+        piece: &mut [T],
         work: impl Fn(usize, &mut [T]) + Sync,
-    ) -> PyResult<()> {
+    ) {
+        let size = part_size(piece.len());
         py.detach(|| match &self.0 {
             Some(pool) => pool.install(|| {
-                let parts = all.par_chunks_mut(PART).enumerate();
-                parts.for_each(|(index, part)| work(index * PART, part));
+                let parts = piece.par_chunks_mut(size).enumerate();
+                parts.for_each(|(index, part)| work(index * size, part));
             }),
-            None => work(0, all),
+            None => work(0, piece),
         });
-        py.check_signals()
     }
 }

@@ -7,9 +7,10 @@ use stickslip_model::{Contact, InvalidParameter, Reduction};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
 use stickslip_plane::gaining;
-use stickslip_plane::progress::SILENT;
+use stickslip_plane::progress::Report;
 
 use crate::arrays::{expect_equal, numbers};
+use crate::background::watched;
 use crate::engines::LawChoice;
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::parallel::Threads;
@@ -26,6 +27,8 @@ impl Atlas {
     /// Traces the boundaries between two κ and two ψ; `ratio` is an interval of g_t/g_n with μ and
     /// α that `psi` was computed from. The collisions have this damping and this law.
     #[staticmethod]
+    #[pyo3(signature = (kappa, psi, ratio, collisions, tolerance, threads, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn trace(
         py: Python<'_>,
         kappa: (f64, f64),
@@ -34,6 +37,7 @@ impl Atlas {
         collisions: (f64, LawChoice),
         tolerance: Option<f64>,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let range = |(low, high): (f64, f64)| Range { low, high };
         let ratio = ratio.map(|(ratio, mu, alpha)| RatioRange {
@@ -45,10 +49,9 @@ impl Atlas {
         let usual = Frame::new(range(kappa), range(psi), damping);
         let frame = Frame { ratio, law, tangential_damping, ..usual };
         let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
-        let pool = Threads::pool(threads)?;
-        let verified = py
-            .detach(|| pool.install(|| atlas::trace(frame, tolerance, SILENT)))
-            .map_err(|error| of_atlas(&error))?;
+        let work = move |report: Report<'_>| atlas::trace(frame, tolerance, report);
+        let verified = watched(py, threads, progress.as_ref(), work)?;
+        let verified = verified.map_err(|error| of_atlas(&error))?;
         let document = Document::new(&verified);
         Ok(Self { atlas: verified.atlas, document })
     }
@@ -131,6 +134,7 @@ impl Atlas {
 
 /// The lines of a window on which |ε_t| is 1, as JSON, and what speaks against them.
 #[pyfunction]
+#[pyo3(signature = (kappa, psi, collisions, tolerance, threads, progress=None))]
 pub fn gaining_lines(
     py: Python<'_>,
     kappa: (f64, f64),
@@ -138,6 +142,7 @@ pub fn gaining_lines(
     collisions: (f64, LawChoice),
     tolerance: Option<f64>,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Option<String>)> {
     let range = |(low, high): (f64, f64)| Range { low, high };
     let (damping, law) = collisions;
@@ -145,10 +150,8 @@ pub fn gaining_lines(
     let usual = Frame::new(range(kappa), range(psi), damping);
     let frame = Frame { law, tangential_damping, ..usual };
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
-    let pool = Threads::pool(threads)?;
-    let found = py
-        .detach(|| pool.install(|| gaining::trace(frame, tolerance, SILENT)))
-        .map_err(|error| of_atlas(&error))?;
+    let work = move |report: Report<'_>| gaining::trace(frame, tolerance, report);
+    let found = watched(py, threads, progress.as_ref(), work)?.map_err(|error| of_atlas(&error))?;
     let document = gaining::Document::from(&found);
     Ok((serde_json::to_string(&document).map_err(failed)?, found.objection()))
 }

@@ -4,14 +4,15 @@ use pyo3::prelude::*;
 use stickslip_figure::pictures;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
-use stickslip_plane::progress::SILENT;
+use stickslip_plane::progress::Report;
 use stickslip_plane::stack::{DampingStackError, StackDocument, stack as stacked};
 
+use crate::background::watched;
 use crate::failure::{bad_input, failed, of_atlas};
-use crate::parallel::Threads;
 
 /// The stack of a window as JSON, its picture as SVG, and what speaks against it.
 #[pyfunction]
+#[pyo3(signature = (kappa, psi, dampings, tolerance, threads, progress=None))]
 pub fn stack(
     py: Python<'_>,
     kappa: (f64, f64),
@@ -19,17 +20,16 @@ pub fn stack(
     dampings: Vec<f64>,
     tolerance: Option<f64>,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, String, Option<String>)> {
     let range = |(low, high): (f64, f64)| Range { low, high };
     let frame = Frame::new(range(kappa), range(psi), 0.0);
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
-    let pool = Threads::pool(threads)?;
-    let made = py
-        .detach(|| pool.install(|| stacked(frame, &dampings, tolerance, SILENT)))
-        .map_err(|error| match error {
-            DampingStackError::Dampings { .. } => bad_input(error),
-            DampingStackError::Atlas { source, .. } => of_atlas(&source),
-        })?;
+    let work = move |report: Report<'_>| stacked(frame, &dampings, tolerance, report);
+    let made = watched(py, threads, progress.as_ref(), work)?.map_err(|error| match error {
+        DampingStackError::Dampings { .. } => bad_input(error),
+        DampingStackError::Atlas { source, .. } => of_atlas(&source),
+    })?;
     let json = serde_json::to_string(&StackDocument::from(&made)).map_err(failed)?;
     Ok((json, pictures::stack::draw(&made).document(), made.objection()))
 }

@@ -3,13 +3,13 @@
 use pyo3::prelude::*;
 use serde_json::to_string;
 use stickslip_model::Reduction;
-use stickslip_plane::progress::SILENT;
+use stickslip_plane::progress::Report;
 use stickslip_practice::time_steps::{self, Quantity, Scheme, Settings, TimeStepsError};
 
 use crate::arrays::{Parameters, Points};
+use crate::background::watched;
 use crate::engines::LawChoice;
 use crate::failure::{Failure, bad_input, failed};
-use crate::parallel::Threads;
 
 /// Errors over impacts and start phases, for each step.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -20,6 +20,8 @@ impl TimeSteps {
     /// Measures the errors of impacts with a law; `steps` are numbers of steps in the undamped
     /// contact time, with so many start phases, and `reduction` is μ and α.
     #[staticmethod]
+    #[pyo3(signature = (parameters, law, steps, scheme, reduction, threads, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn measure(
         py: Python<'_>,
         parameters: Parameters<'_>,
@@ -28,6 +30,7 @@ impl TimeSteps {
         scheme: &str,
         reduction: (f64, f64),
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let names = Scheme::ALL.map(Scheme::name);
         let scheme = Scheme::find(scheme)
@@ -39,8 +42,8 @@ impl TimeSteps {
             scheme,
             reduction: Reduction { mu: reduction.0, alpha: reduction.1 },
         };
-        let pool = Threads::pool(threads)?;
-        let found = py.detach(|| pool.install(|| time_steps::run(&settings, SILENT)));
+        let work = move |report: Report<'_>| time_steps::run(&settings, report);
+        let found = watched(py, threads, progress.as_ref(), work)?;
         found.map(Self).map_err(|error| match error {
             TimeStepsError::Settings(invalid) => bad_input(invalid),
             TimeStepsError::Contact(failure) => {

@@ -4,36 +4,40 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use stickslip_model::Contact;
 use stickslip_plane::Range;
-use stickslip_plane::progress::SILENT;
+use stickslip_plane::progress::Report;
 use stickslip_reproduction::figures::Reproduction;
 use stickslip_reproduction::statements::Spring;
 use stickslip_studies::{Cell, Study, StudyError, contact_laws, convergence, stiff_springs};
 
+use crate::background::watched;
 use crate::failure::{bad_input, failed};
-use crate::parallel::Threads;
 
 /// The limit of stiff springs.
 #[pyfunction]
+#[pyo3(signature = (kappa, psi, threads, progress=None))]
 pub fn asymptote(
     py: Python<'_>,
     kappa: (f64, f64),
     psi: Vec<f64>,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let kappa = Range { low: kappa.0, high: kappa.1 };
     let settings = stiff_springs::Settings { kappa, psi };
     settings.validate().map_err(bad_input)?;
-    run(py, threads, || stiff_springs::run(&settings, SILENT))
+    run(py, threads, progress.as_ref(), move |report| stiff_springs::run(&settings, report))
 }
 
 /// How accurate the integrators are, on collisions (κ, ψ, damping), or on the usual ones with this
 /// damping.
 #[pyfunction]
+#[pyo3(signature = (contacts, damping, threads, progress=None))]
 pub fn converge(
     py: Python<'_>,
     contacts: Option<Vec<[f64; 3]>>,
     damping: f64,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let settings = match contacts {
         None => convergence::Settings::usual(damping).map_err(bad_input)?,
@@ -44,22 +48,24 @@ pub fn converge(
         }
     };
     settings.validate().map_err(bad_input)?;
-    run(py, threads, || convergence::run(&settings, SILENT))
+    run(py, threads, progress.as_ref(), move |report| convergence::run(&settings, report))
 }
 
 /// What the contact laws of particle codes do, on maps of so many cells in each direction.
 #[pyfunction(name = "contact_laws")]
+#[pyo3(signature = (damping, tangential_damping, cells, threads, progress=None))]
 pub fn compare_laws(
     py: Python<'_>,
     damping: f64,
     tangential_damping: f64,
     cells: usize,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let usual = contact_laws::Settings::default();
     let settings = contact_laws::Settings { damping, tangential_damping, cells, ..usual };
     settings.validate().map_err(bad_input)?;
-    run(py, threads, || contact_laws::run(&settings, SILENT))
+    run(py, threads, progress.as_ref(), move |report| contact_laws::run(&settings, report))
 }
 
 /// The titles of the parts of the reproduction.
@@ -70,19 +76,21 @@ pub fn reproduction_parts() -> Vec<&'static str> {
 
 /// One part of the reproduction, with maps of so many cells in each direction.
 #[pyfunction]
+#[pyo3(signature = (part, cells, threads, progress=None))]
 pub fn reproduce(
     py: Python<'_>,
     part: usize,
     cells: usize,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let parts = Reproduction::parts();
     let chosen = parts
         .get(part)
         .ok_or_else(|| bad_input(format!("part {part}; expected 0 to {}", parts.len() - 1)))?;
     let reproduction = Reproduction::new(cells, Spring::Reset);
-    let pool = Threads::pool(threads)?;
-    let section = py.detach(|| pool.install(|| chosen.run(&reproduction))).map_err(failed)?;
+    let work = move |_: Report<'_>| chosen.run(&reproduction);
+    let section = watched(py, threads, progress.as_ref(), work)?.map_err(failed)?;
     let study = dictionary(py, &section.study)?;
     let objections: Vec<_> = section.objections.iter().map(ToString::to_string).collect();
     study.set_item("objections", objections)?;
@@ -90,13 +98,13 @@ pub fn reproduce(
 }
 
 /// What `make` makes, on so many threads, as a dictionary.
-pub fn run(
-    py: Python<'_>,
+pub fn run<'py>(
+    py: Python<'py>,
     threads: usize,
-    make: impl FnOnce() -> Result<Study, StudyError> + Send,
-) -> PyResult<Bound<'_, PyDict>> {
-    let pool = Threads::pool(threads)?;
-    let study = py.detach(|| pool.install(make)).map_err(failed)?;
+    progress: Option<&Py<PyAny>>,
+    make: impl FnOnce(Report<'_>) -> Result<Study, StudyError> + Send + 'static,
+) -> PyResult<Bound<'py, PyDict>> {
+    let study = watched(py, threads, progress, make)?.map_err(failed)?;
     dictionary(py, &study)
 }
 

@@ -3,12 +3,13 @@
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use stickslip_plane::Range;
-use stickslip_plane::progress::SILENT;
+use stickslip_plane::progress::Report;
 use stickslip_practice::tables::{
     self, Document, SCHEMA, Settings, Table, TableError, Verification, Window,
 };
 
 use crate::arrays::{Pairs, numbers};
+use crate::background::watched;
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::impacts::BodyPair;
 use crate::parallel::Threads;
@@ -21,6 +22,8 @@ pub struct RestitutionTable(Table);
 impl RestitutionTable {
     /// Makes and verifies the table of a window of κ and ψ at one damping.
     #[staticmethod]
+    #[pyo3(signature = (kappa, psi, damping, bound, regions, threads, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn make(
         py: Python<'_>,
         kappa: (f64, f64),
@@ -29,13 +32,16 @@ impl RestitutionTable {
         bound: f64,
         regions: bool,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let window = Window::Scaled { kappa: range(kappa), psi: range(psi), damping };
-        Self::of(py, &Settings { window, bound, regions }, threads)
+        Self::of(py, Settings { window, bound, regions }, threads, progress.as_ref())
     }
 
     /// Makes and verifies the table of a window of velocities of two bodies.
     #[staticmethod]
+    #[pyo3(signature = (pair, normal, tangential, bound, regions, threads, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn make_of_velocities(
         py: Python<'_>,
         pair: PyRef<'_, BodyPair>,
@@ -44,13 +50,14 @@ impl RestitutionTable {
         bound: f64,
         regions: bool,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let window = Window::Velocities {
             pair: pair.reduced(),
             normal_m_per_s: range(normal),
             tangential_m_per_s: range(tangential),
         };
-        Self::of(py, &Settings { window, bound, regions }, threads)
+        Self::of(py, Settings { window, bound, regions }, threads, progress.as_ref())
     }
 
     /// The table in the text of a file that `table` has written.
@@ -147,9 +154,14 @@ impl RestitutionTable {
 
 impl RestitutionTable {
     /// Makes and verifies the table that settings ask for.
-    fn of(py: Python<'_>, settings: &Settings, threads: usize) -> PyResult<Self> {
-        let pool = Threads::pool(threads)?;
-        let made = py.detach(|| pool.install(|| tables::run(settings, SILENT)));
+    fn of(
+        py: Python<'_>,
+        settings: Settings,
+        threads: usize,
+        progress: Option<&Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let work = move |report: Report<'_>| tables::run(&settings, report);
+        let made = watched(py, threads, progress, work)?;
         made.map(Self).map_err(|error| match error {
             TableError::Settings(_) | TableError::Parameter(_) => bad_input(error),
             TableError::Atlas(error) => of_atlas(&error),

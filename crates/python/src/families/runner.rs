@@ -8,10 +8,10 @@ use stickslip_expression::SystemFamily;
 use stickslip_solver::{Dop853, Margin};
 use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
+use crate::background::PAUSE;
 use crate::failure::bad_input;
 use crate::families::blueprint::{Blueprint, Members};
 use crate::families::failure::UserError;
-use crate::hybrid::system::PAUSE;
 use crate::hybrid::trouble::{Trouble, lock};
 
 /// What the runs of a family are made of.

@@ -15,10 +15,10 @@ use stickslip_tracer::{
     Surveyor, Watch,
 };
 
+use crate::background::PAUSE;
 use crate::failure::failed;
 use crate::families::failure::{UserError, of_atlas};
 use crate::families::runner::Runner;
-use crate::hybrid::system::PAUSE;
 use crate::hybrid::trouble::{Trouble, lock};
 use crate::parallel::Threads;
 

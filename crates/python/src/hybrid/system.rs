@@ -2,13 +2,14 @@
 
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stickslip_solver::sliding::{SampledFilippov, SwitchedDynamic};
 use stickslip_solver::{Guard, Schedule};
 
+use crate::background::PAUSE;
 use crate::hybrid::arguments::Clock;
 use crate::hybrid::function::{Caller, Code, Function, Input};
 use crate::hybrid::modes::{After, Change, Mode, Parts, Source};
@@ -19,7 +20,6 @@ use crate::hybrid::trouble::Trouble;
 /// Calls after which the clock is looked at.
 const CALLS: u64 = 64;
 /// The time after which Ctrl-C is looked for.
-pub const PAUSE: Duration = Duration::from_millis(50);
 
 /// The highest order of a zero that is looked for.
 const HIGHEST_ORDER: u32 = 6;

@@ -1,0 +1,129 @@
+//! Long work on threads of its own, while the thread of Python looks for Ctrl-C and says how far the
+//! work is.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+use stickslip_plane::progress::{Progress, Report};
+
+use crate::failure::failed;
+use crate::hybrid::trouble::lock;
+use crate::parallel::Threads;
+
+/// The time between two looks for Ctrl-C.
+pub const PAUSE: Duration = Duration::from_millis(50);
+
+/// A look for Ctrl-C now and then, from a run on the thread of Python.
+pub struct Signals {
+    steps: AtomicUsize,
+    looked: Mutex<Instant>,
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl Default for Signals {
+    fn default() -> Self {
+        let looked = Mutex::new(Instant::now());
+        Self { steps: AtomicUsize::new(0), looked, raised: Mutex::new(None) }
+    }
+}
+
+impl Signals {
+    /// Steps between two looks at the clock, which take longer than a short step.
+    const STEPS: usize = 32;
+
+    /// Whether Ctrl-C was pressed. It is asked after every step.
+    pub fn stop(&self) -> bool {
+        if !self.steps.fetch_add(1, Ordering::Relaxed).is_multiple_of(Self::STEPS) {
+            return false;
+        }
+        let mut looked = lock(&self.looked);
+        if looked.elapsed() >= PAUSE {
+            *looked = Instant::now();
+            *lock(&self.raised) = Python::attach(|py| py.check_signals().err());
+        }
+        lock(&self.raised).is_some()
+    }
+
+    /// The exception of Ctrl-C, if it was pressed.
+    pub fn raised(self) -> PyResult<()> {
+        let raised = self.raised.into_inner().unwrap_or_else(PoisonError::into_inner);
+        raised.map_or(Ok(()), Err)
+    }
+}
+
+/// How far the work is, and whether nobody waits for it any more.
+#[derive(Default)]
+struct State {
+    done: AtomicUsize,
+    steps: AtomicUsize,
+    abandoned: AtomicBool,
+}
+
+/// With this the threads of abandoned work unwind.
+struct Abandoned;
+
+impl State {
+    /// Takes a report of the work. It does not return if the work is abandoned.
+    fn take(&self, progress: Progress) {
+        match progress {
+            Progress::Begin { steps } => self.steps.fetch_add(steps, Ordering::Relaxed),
+            Progress::Advance { steps } => self.done.fetch_add(steps, Ordering::Relaxed),
+        };
+        if self.abandoned.load(Ordering::Relaxed) {
+            resume_unwind(Box::new(Abandoned));
+        }
+    }
+
+    /// Calls `function` with the steps that are done and with all that have begun.
+    fn tell(&self, py: Python<'_>, function: Option<&Py<PyAny>>) -> PyResult<()> {
+        let Some(function) = function else { return Ok(()) };
+        let [done, steps] = [&self.done, &self.steps].map(|count| count.load(Ordering::Relaxed));
+        function.call1(py, (done, steps)).map(drop)
+    }
+}
+
+/// What `work` makes on so many threads, or on one for each core if the number is 0.
+///
+/// `progress` is called now and then with the steps that are done and with all that have begun. Its
+/// exception, or Ctrl-C, ends the call at once, and the threads end with their next report.
+pub fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(Report<'_>) -> T + Send + 'static,
+) -> PyResult<T> {
+    let pool = Threads::pool(threads)?;
+    let state = Arc::new(State::default());
+    let (sender, receiver) = channel::<Result<T, Box<dyn Any + Send>>>();
+    let theirs = Arc::clone(&state);
+    let thread = move || {
+        let report = |progress| theirs.take(progress);
+        let made = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&report))));
+        // Nobody waits any more if the work is abandoned.
+        let _ = sender.send(made);
+    };
+    std::thread::Builder::new().spawn(thread).map_err(failed)?;
+    let receiver = Mutex::new(receiver);
+    loop {
+        match py.detach(|| lock(&receiver).recv_timeout(PAUSE)) {
+            Ok(Ok(made)) => {
+                state.tell(py, progress)?;
+                return Ok(made);
+            }
+            Ok(Err(panic)) => resume_unwind(panic),
+            Err(RecvTimeoutError::Disconnected) => return Err(failed("the work has no end")),
+            Err(RecvTimeoutError::Timeout) => {
+                let looked = py.check_signals().and_then(|()| state.tell(py, progress));
+                if let Err(error) = looked {
+                    state.abandoned.store(true, Ordering::Relaxed);
+                    return Err(error);
+                }
+            }
+        }
+    }
+}
