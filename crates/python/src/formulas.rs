@@ -5,11 +5,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Recording, Runnable, SensitivityError, System};
+use stickslip_plane::progress::Report;
 use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 
 use stickslip_studies::own_system;
 
-use crate::background::Signals;
+use crate::background::{Signals, watched};
 use crate::failure::{bad_input, failed};
 use crate::studies;
 
@@ -140,8 +141,9 @@ impl FormulaSystem {
                 "the system has no end and no rule that ends it; expected t_span",
             ));
         }
-        let found = py.detach(|| system.sensitivities(&by, &parameters, method, end, &options));
-        let found = found.map_err(|error| match error {
+        let work =
+            move |_: Report<'_>| system.sensitivities(&by, &parameters, method, end, &options);
+        let found = watched(py, 1, None, work)?.map_err(|error| match error {
             SensitivityError::Parameters(error) => bad_input(error),
             SensitivityError::Run(error) => failed(error),
             error @ SensitivityError::Jump { .. } => failed(error),

@@ -30,6 +30,15 @@ mod tape;
 /// The module that Python loads. It has no state of its own, and needs no lock of the interpreter.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
+    use numpy::PyArray1;
+    use pyo3::prelude::*;
+
+    /// Looks up NumPy now: while a result is made, Ctrl-C could end the look with a panic.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) {
+        PyArray1::<f64>::zeros(module.py(), 0, false);
+    }
+
     #[pymodule_export]
     use super::arrays::{collide_many, eps_t};
     #[pymodule_export]

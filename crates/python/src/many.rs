@@ -5,16 +5,20 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use rayon::prelude::*;
 use stickslip_expression::System;
+use stickslip_plane::progress::{Progress, Report};
 use stickslip_solver::{DynamicRun, DynamicSwitch};
 
+use crate::background::watched;
 use crate::failure::bad_input;
 use crate::formulas::{FormulaSystem, Settings, word};
-use crate::parallel::{Threads, in_pieces};
 
 /// Runs a system with many parameters, one row of `parameters` for each run, and from many
 /// states, if there are any. Returns columns with an entry for each run, and for each event.
 #[expect(clippy::too_many_arguments, reason = "they are those of a run")]
 #[pyfunction]
+#[pyo3(signature = (
+    system, parameters, states, start, end, settings, times, threads, progress=None
+))]
 pub fn run_many<'py>(
     py: Python<'py>,
     system: &FormulaSystem,
@@ -25,26 +29,29 @@ pub fn run_many<'py>(
     settings: Settings,
     times: Option<Vec<f64>>,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (method, options) = settings.checked()?;
     let compiled = system.0.compile().map_err(bad_input)?;
-    let (parameters, states) = (parameters.as_array(), states.as_ref().map(|it| it.as_array()));
-    let count = parameters.nrows();
-    let ends_itself = system.0.ends_itself();
-    let one = |index: usize| -> Result<Ended, String> {
-        let row = parameters.row(index).to_vec();
-        let runnable = compiled.with(&row).map_err(|error| error.to_string())?;
-        let state = states.as_ref().map(|states| states.row(index).to_vec());
-        let runnable = runnable
-            .starting(start.0, start.1, state.as_deref())
-            .map_err(|error| error.to_string())?;
+    let rows_of = |array: &PyReadonlyArray2<'_, f64>| -> Vec<Vec<f64>> {
+        array.as_array().rows().into_iter().map(|row| row.to_vec()).collect()
+    };
+    let (parameters, states) = (rows_of(&parameters), states.as_ref().map(rows_of));
+    let (count, wanted) = (parameters.len(), times.as_ref().map_or(0, Vec::len));
+    let (ends_itself, system) = (system.0.ends_itself(), system.0.clone());
+    let explaining = system.clone();
+    let one = move |index: usize| -> Result<Ended, String> {
+        let runnable = compiled.with(&parameters[index]).map_err(|error| error.to_string())?;
+        let state = states.as_ref().map(|states| states[index].as_slice());
+        let runnable =
+            runnable.starting(start.0, start.1, state).map_err(|error| error.to_string())?;
         let (from, end) = (runnable.start().s, end.unwrap_or(runnable.end()));
         if end.is_nan() || end <= from || end.is_infinite() && !ends_itself {
             return Err(format!("the run ends at {end}; expected an end after {from}"));
         }
         if let Some(times) = &times {
             let found = runnable.record(method, end, &options);
-            let found = found.map_err(|error| system.0.explained(&error))?;
+            let found = found.map_err(|error| explaining.explained(&error))?;
             let samples = times.iter().flat_map(|&s| {
                 found.at(s).unwrap_or_else(|| vec![f64::NAN; found.run.state.len()])
             });
@@ -53,18 +60,20 @@ pub fn run_many<'py>(
         }
         let mut events = Vec::new();
         let run = runnable.events(method, end, &options, &mut events);
-        let run = run.map_err(|error| system.0.explained(&error))?;
+        let run = run.map_err(|error| explaining.explained(&error))?;
         Ok(Ended { run, events, samples: Vec::new() })
     };
-    let pool = Threads::pool(threads)?;
-    let mut ended = Vec::with_capacity(count);
-    in_pieces(py, count, |piece| {
-        ended.extend(
-            py.detach(|| pool.install(|| piece.into_par_iter().map(one).collect::<Vec<_>>())),
-        );
-        Ok(())
-    })?;
-    rows(py, &system.0, ended, times.map_or(0, |times| times.len()))
+    let work = move |report: Report<'_>| {
+        report(Progress::Begin { steps: count });
+        let reported = |index| {
+            let ended = one(index);
+            report(Progress::Advance { steps: 1 });
+            ended
+        };
+        (0..count).into_par_iter().map(reported).collect::<Vec<_>>()
+    };
+    let ended = watched(py, threads, progress.as_ref(), work)?;
+    rows(py, &system, ended, wanted)
 }
 
 /// A run of many.

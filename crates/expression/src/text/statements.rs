@@ -111,6 +111,9 @@ impl<'a> Reader<'a> {
                     let last = sections.len() - 1;
                     sections[last].statements.push(statement);
                 }
+                Token::Name("end") => {
+                    return Err(self.error("expected = behind `end`, as in `end = 10`".to_owned()));
+                }
                 Token::Name(name) => {
                     let words = ["parameter", "state", "discrete", "mode", "start", "when", "at"];
                     let words = words.into_iter().chain(["every", "end", "rest", "sliding"]);

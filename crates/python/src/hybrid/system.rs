@@ -19,8 +19,6 @@ use crate::hybrid::trouble::Trouble;
 
 /// Calls after which the clock is looked at.
 const CALLS: u64 = 64;
-/// The time after which Ctrl-C is looked for.
-
 /// The highest order of a zero that is looked for.
 const HIGHEST_ORDER: u32 = 6;
 
