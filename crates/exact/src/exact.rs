@@ -7,6 +7,9 @@
 //! once. Nothing is searched by sampling, so that no switch is missed and none is invented. The
 //! functions that decide also tell how near the collision came to other switches: its [`margins`].
 //!
+//! The engine is the oracle of the integrator. It shares the contact, the result type and the names
+//! of margins with it, and nothing else: this crate lies below the integrator.
+//!
 //! Source files in reading order: `moment` and `slip` are what a collision is made of; `normal` is
 //! the interface of normal motions, with the closed form without damping and the expansion with it;
 //! `slide` finds the end of a slip phase, `swing` and `release` the end of a stick phase, `phases`

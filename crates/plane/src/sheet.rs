@@ -1,4 +1,8 @@
 //! A window in its traced coordinates, and the accuracy that boundaries can have in it.
+//!
+//! Margins leave ln κ and ln ψ open to 1e-13. In a window that is narrow in ψ, this is a large part
+//! of its height; but along the height it moves no boundary that runs up, and regions between such
+//! boundaries may be arbitrarily narrow in κ ([`Sheet::resolution_of`]).
 
 use stickslip_tracer::{Node, Point, Window};
 

@@ -79,7 +79,9 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ///
     /// A mode that starts from a known zero may need more state, or another form of its guards, as
     /// long as a guard is so near to that zero that its usual form would be rounding alone. This
-    /// function then replaces it by a mode that has the same solutions.
+    /// function then replaces it by a mode that has the same solutions. It should not do so where
+    /// the usual form would be rounding still: after a short step, such a guard ends the phase at
+    /// once.
     #[inline]
     fn settle(&self, mode: Self::Mode, _y: &State<N>) -> Self::Mode {
         mode
@@ -99,7 +101,8 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ///
     /// The provided version works for every system. If the right-hand sides of the modes differ
     /// in cost, a system may give each mode a step of its own, compiled for that right-hand side
-    /// alone.
+    /// alone. In the collision of spheres, slip uses two of eight components; the stages of the
+    /// others vanish when it is compiled.
     #[inline]
     fn step<M: Method>(&self, mode: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
         step.take::<M>(&mut |s, y| self.field(mode, s, y), trial);

@@ -18,6 +18,10 @@
 //! or at its end; and the phase ends with the run, at the zero of another guard, or both go through
 //! the same guard and are sent to different modes.
 //!
+//! Not listed are zeros of order three and more at a start, guards that jump or have poles, and
+//! transitions that branch without a condition. The tracer reports a label that changes there as
+//! unresolved.
+//!
 //! To follow a margin to zero and beyond, the itinerary up to it is prescribed: in every phase,
 //! only the guard that should end the phase may fire. The margin is then a smooth function of the
 //! parameters on both sides of zero. Two margins exist on one side only: that of a phase behind a
@@ -30,7 +34,10 @@
 //! Where a guard starts its phase from a zero of known order
 //! ([`Guard::from_zero`](crate::Guard::from_zero)), the extrema are those of the guard divided by
 //! that power of the time since the start. They vanish where those of the guard do. But near the
-//! start the guard's own extrema merge in pairs, and change little with the parameters.
+//! start the guard's own extrema merge in pairs, and change little with the parameters. For
+//! example, the minimum of aθ + bθ² + cθ³ grazes zero at a = b²/(4c) and merges with the maximum
+//! close behind, at a = b²/(3c). Divided by θ, the minimum exists for every a and changes as a
+//! does.
 //!
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
 //! is sampled on every step, also that of a readable system, and steps of the method locate its

@@ -145,6 +145,9 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 /// # Ok::<(), stickslip_solver::RunError>(())
 /// ```
 ///
+/// The caller names A = N (1 + P), since stable Rust cannot compute the length of an array from two
+/// others. A wrong A does not compile.
+///
 /// # Errors
 /// Those of [`run`]. [`RunError::State`] is also returned if a switch is a graze, where derivatives
 /// do not exist.

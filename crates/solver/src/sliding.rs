@@ -73,6 +73,15 @@
 //!
 //! A step that slides along k surfaces evaluates k + 1 fields for each one of another step.
 //!
+//! The field is not stabilised: a term that pulls the state back would change the field and need a
+//! rate of its own.
+//!
+//! # Why this is a system and not a part of the engine
+//!
+//! On a surface, a solution has a field, a domain and a place where it ends: all that makes a mode.
+//! So events, margins, sensitivities and atlases need to know nothing of sliding, and what makes
+//! them better makes sliding better.
+//!
 //! [`SampledFilippov`] does the same with a [`SwitchedDynamic`] system, whose functions cannot be
 //! read and whose dimension and surfaces may be known at run time only.
 

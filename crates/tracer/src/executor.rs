@@ -1,4 +1,7 @@
 //! Who computes the runs at many points: the caller, on as many threads as it likes.
+//!
+//! Only the runs of the grid and of a verification are computed this way. Following a curve is
+//! serial: each node depends on the one before, and each vertex on all curves before.
 
 use crate::family::{Family, FreeRun};
 use crate::window::Point;

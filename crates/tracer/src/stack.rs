@@ -1,5 +1,11 @@
 //! Atlases of a family with a third parameter, and where their structure changes.
 //!
+//! Atlases are made at the values asked for, and neighbours are compared as graphs of labelled
+//! regions. Where two neighbours differ, candidates are stretches of the arrangement around these
+//! regions whose ends may meet: three conditions, which Newton's method solves for the place and
+//! the value. A solution counts if atlases on both sides of it agree with runs and differ.
+//! Otherwise the interval is bisected. Then both rests are searched in the same way.
+//!
 //! In reading order:
 //!
 //! - `structure`: atlases compared as planar graphs with labels

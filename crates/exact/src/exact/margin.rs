@@ -7,11 +7,16 @@
 //! - A slip phase passes the first turn of P = κL + L̈ if g = s·w − dL/dt > 0 there.
 //! - A slip phase lasts to the end of contact if g > 0 at the end.
 //! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at both of
-//!   its tops if it has two. Tops are told apart by the side of the turns on which they are. Near
-//!   the end of contact this number is linear in the time at which y vanishes; the gap L − |y| is
-//!   not. With damping it is the other way round.
+//!   its tops if it has two. The gap L − |y| vanishes with this number. But the ratio has one
+//!   maximum on each half swing, between known places, while the number of minima of the gap is not
+//!   known. Near the end of contact the number is linear in the time at which y vanishes; the gap
+//!   is not. With damping it is the other way round, and the gap is used (`late`).
 //! - With damping, a last stick phase ends on the side on which it does if |y| > 0 at the end of
 //!   contact.
+//!
+//! The name of a top says on which side of the turns it lies. Called first and second, an only top
+//! would change its name where another one appears beside it. Where no turn decides, the top has
+//! both names.
 //!
 //! Each margin is smooth through 0 as long as the switches before it are prescribed. A switch that
 //! ends slip is prescribed as before or after the turns, a switch that ends stick by the number of

@@ -3,8 +3,9 @@
 //!
 //! A [`Trajectory`] is the compression as a function of time, and what follows from it for the
 //! spring's limit L = F/κ. [`undamped`] is the closed form without damping, [`viscoelastic`] the
-//! expansion with it. A further law with a tangential spring of constant stiffness is a further
-//! trajectory.
+//! expansion with it. The decisions need little of the normal motion: that L has one maximum, and
+//! where P = κL + L̈ changes its sign. They are compiled once for each trajectory, without dynamic
+//! dispatch. A further law with a tangential spring of constant stiffness is a further trajectory.
 
 pub mod roots;
 pub mod undamped;

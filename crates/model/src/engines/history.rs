@@ -1,4 +1,7 @@
 //! The course of a collision in time, at every moment and not at its switches alone.
+//!
+//! A collision has no list of samples. The integrator's dense output is kept instead, so that a
+//! picture can ask for as many moments of a phase as it needs.
 
 mod followed;
 mod record;

@@ -4,6 +4,11 @@
 //! where the normal force begins to attract. The first exit in the name of a margin is not an exit
 //! of a guard but the beginning of the contact, so that a margin is followed beyond the contacts
 //! that begin so.
+//!
+//! A run stops soon behind the end of contact. Where the normal force begins to attract, a
+//! prescribed itinerary may wait for something that does not come, and the equations without their
+//! end would take as many steps as a run may. The normal motion does not depend on the tangential
+//! one and is the same at all points of a plane, so its end is known beforehand.
 
 use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, STATE};
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};

@@ -95,9 +95,10 @@ impl Guard {
     /// after the zero could not be told otherwise.
     ///
     /// The zero is divided out before the search for roots. So the guard does not fire at the
-    /// start, and nobody has to nudge the state away from it. A value there that is only due to
-    /// rounding of the state counts as zero. A double zero is most accurate if guard and slope are
-    /// components of the state that start from exactly 0.
+    /// start, and nobody has to nudge the state away from it; a nudge or a dead time would miss a
+    /// switch that follows soon. A value there that is only due to rounding of the state counts as
+    /// zero. A double zero is most accurate if guard and slope are components of the state that
+    /// start from exactly 0.
     #[must_use]
     pub const fn from_zero(self, order: u32) -> Self {
         Self { zero_order: order, ..self }
@@ -113,7 +114,8 @@ impl Guard {
     /// transitions. With a count of 0 it never ends the run.
     ///
     /// Guards are counted by their place, whatever the mode, or by the
-    /// [counter](crate::HybridSystem::counter) that the system gives them.
+    /// [counter](crate::HybridSystem::counter) that the system gives them. A counter is needed
+    /// where one place in the list holds different guards in different modes.
     #[must_use]
     pub const fn terminal_after(self, count: u32) -> Self {
         Self { terminal: count, ..self }

@@ -90,6 +90,9 @@ pub struct Rest<Mode> {
 }
 
 /// Receives what a run finds, in order.
+///
+/// A run returns no list of switches. It reports them while it goes on, so that a sweep allocates
+/// nothing. [`Recorder`](crate::Recorder) is the observer that keeps everything.
 pub trait Observer<Mode, const N: usize> {
     /// Whether the run calls [`Self::on_segment`]. Dense output costs further stages.
     const WANTS_SEGMENTS: bool = false;

@@ -1,4 +1,7 @@
 //! The times at which a clock fires.
+//!
+//! A clock is a guard: it has a place in the list, a priority, a count and a transition. Only its
+//! time is found in another way.
 
 use crate::runs::InvalidTimes;
 

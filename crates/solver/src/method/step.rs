@@ -1,4 +1,9 @@
 //! One step with a Runge–Kutta pair, as a pure function.
+//!
+//! A step on an array does not keep its stages. Dense output needs them on one step in a thousand,
+//! and computing them again there is cheaper than storing them on all others. A recorded trajectory
+//! therefore costs the stages twice. A step on buffers keeps them, since they lie in a buffer
+//! anyway: with many components, right-hand sides are what costs.
 
 use nalgebra::ArrayStorage;
 

@@ -1,4 +1,11 @@
 //! The independent variable of a run, and switches that accumulate in it.
+//!
+//! Phases that become shorter and shorter accumulate; so do phases in which rounding hides how far
+//! a guard goes. A ball above a floor at −1, for example, bounces for ever with heights of the last
+//! digit. Twelve such phases in a row are an accumulation, each shorter than 1e-4 of the run; six
+//! are, if the phases before became shorter and shorter. So are six transitions of one guard at one
+//! instant behind such phases. What is hidden gives no data: the place is extrapolated from the
+//! phases that rounding shows.
 
 use crate::options::Options;
 
@@ -34,7 +41,9 @@ impl Clock {
     }
 
     /// By how much rounding may have moved the time at which something happens: its own, and that
-    /// of the state since the start of the run.
+    /// of the state since the start of the run. The state carries the rounding of all its steps
+    /// into the next phase. A clock knows its time exactly, so a guard that vanishes with it may
+    /// lie a few roundings of the whole run beside it.
     pub(crate) fn drift(&self) -> f64 {
         f64::EPSILON * (4.0 * (self.s - self.start) + self.s.abs())
     }

@@ -193,8 +193,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// Takes one step that is good enough. The step ends at a switch if it meets one that changes
     /// something. Other events on it are reported. Returns the outcome if the run ends here.
     ///
-    /// An event contains a step. It is written to the place where it stays, since returning it
-    /// would copy it on every step.
+    /// An event contains a step. It is written to the place where it stays: to return it would copy
+    /// it on every step, which was 8 % of a collision's instructions.
     fn advance<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,

@@ -7,6 +7,10 @@
 //! Çamlıbel, *Automatica* 35 (1999) 467). With one surface this is A < 0. At most 3⁴ = 81
 //! combinations are tried, and surfaces are slid along only where their part of −A is a P-matrix,
 //! so that the solution is attracted to them.
+//!
+//! All surfaces are decided together. One after the other, the answers could contradict each other:
+//! where a solution spirals into the line in which two surfaces meet, each transition would undo
+//! the one before.
 
 use crate::sliding::control::{self, Row, Square, View, minor, solved};
 use crate::sliding::{MOST, Refusal, Side, Sides};

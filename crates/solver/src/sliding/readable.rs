@@ -24,6 +24,7 @@ pub trait Switched<const N: usize, const K: usize, const G: usize> {
     type Mode: Copy + PartialEq + fmt::Debug;
 
     /// The derivative of the state where the surfaces have these `signs`, each of them +1 or −1.
+    /// The sign 0 is never asked for: the field along a surface is a sum of fields beside it.
     fn field<T: Number>(&self, mode: Self::Mode, signs: &[T; K], s: T, y: &[T; N]) -> [T; N];
 
     /// The functions whose zeros are the surfaces. They may depend on time, and need not be smooth

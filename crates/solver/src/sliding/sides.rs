@@ -32,6 +32,9 @@ impl Side {
 }
 
 /// Why the solution does not go on from a state on one or more surfaces, or not in one way only.
+///
+/// A transition cannot fail, so a refusal is a mode. Its field is NaN, which ends the run with an
+/// error, and the switch to the mode says why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The equations for the multipliers are singular: infinitely many of them hold the state on

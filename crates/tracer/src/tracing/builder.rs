@@ -1,4 +1,9 @@
 //! A network that grows while it is traced, with an index of its pieces by place.
+//!
+//! Each vertex has an error. Where boundaries touch, one pair of margins determines the place to
+//! half the digits, another pair to all of them. A vertex that is found again with a smaller error
+//! moves to the better place. In the end all other vertices are solved again with the margins of
+//! all curves that end there.
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};

@@ -1,4 +1,8 @@
 //! The stages of a search, in steps between which it can stop and go on.
+//!
+//! The number of the next step, with the network and the errors of its vertices, is all that is
+//! needed to go on, from memory or from a file. The runs of the grid are computed again. So is a
+//! verification that was cancelled, and a second look starts again from the network before it.
 
 use crate::executor::Executor;
 use crate::family::Family;

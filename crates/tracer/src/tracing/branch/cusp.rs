@@ -1,4 +1,9 @@
 //! Cusps, where the extremum that a branch follows merges with another one on its zero.
+//!
+//! Neither extremum exists beyond a cusp. On one branch the margin ends with the power 3/2 of the
+//! distance, on the other branch it is singular: each branch alone locates the cusp to 1e-7 of the
+//! window or worse. What makes the extrema merge is smooth, and a family may know it
+//! ([`Family::cusps`]). Then the cusp is solved for.
 
 use crate::cubic::Cubic;
 use crate::curve::VertexKind;

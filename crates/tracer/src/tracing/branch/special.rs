@@ -1,4 +1,8 @@
 //! The special points that steps run into, where a branch must end.
+//!
+//! Margins that cross are searched for before margins that touch, which take many more runs. A
+//! branch that stalls without a known cause ends at the vertex to which its margin leads, if one is
+//! known within a thousandth of the window, or at the window's edge if the edge is close ahead.
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};

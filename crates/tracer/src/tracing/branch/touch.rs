@@ -1,4 +1,9 @@
 //! Boundaries that touch: special points that neither labels nor crossings of margins show.
+//!
+//! Found are other margins that dip to zero between the last three nodes, and boundaries that meet
+//! tangentially. Two kinds of margins do not count. The events on both sides of a boundary may each
+//! have a margin that vanishes there: such twins do not touch. And the value and the slope of a
+//! margin do not show where it vanishes if its slope changes within the shortest differences.
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};

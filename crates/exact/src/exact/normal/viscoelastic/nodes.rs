@@ -4,7 +4,8 @@
 //! In r = √a the states are analytic functions for every damping: also the end of contact, where
 //! U = √(a|V|), and what is counted back from it. On each interval of r they are polynomials
 //! through a few trajectories, which are computed with twice the digits when the interval is used
-//! for the first time. A new damping then takes the time of evaluating polynomials.
+//! for the first time. A new damping then takes the time of evaluating polynomials. The table is
+//! not a file, since nobody could check its numbers by reading.
 
 use std::sync::OnceLock;
 
