@@ -67,8 +67,8 @@ pub(crate) fn correct<F: Family>(
 }
 
 /// The zero of a margin on the edge of a window through `guess`, along which `axis` is constant; at
-/// most `reach` away. Where the boundary all but runs along the edge, it is the place of the edge
-/// next to a zero beside `guess`.
+/// most `reach` away. Where the boundary nearly runs along the edge, the result is the place of the
+/// edge next to a zero beside `guess`.
 pub(crate) fn correct_on_edge<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,

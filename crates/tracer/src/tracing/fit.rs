@@ -1,8 +1,10 @@
 //! Curves as close to their boundary as the options ask.
 //!
-//! The steps along a curve do not end at its vertices, and a margin may be singular at a vertex, or
-//! exist up to it only, so that its gradient does not tell the direction of the curve there. So
-//! cubics are compared with the boundary, and divided where they are too far from it.
+//! The steps along a curve do not end at its vertices. At a vertex a margin may be singular, or
+//! exist up to it only; its gradient then does not give the direction of the curve. So an accepted
+//! cubic is compared with the boundary at a second place, and divided if it is too far from it
+//! there. Refusing the step instead would not help: next to a singular vertex, a branch would end
+//! beside it in ever shorter steps, which locate the vertex worse than a long step does.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
@@ -124,7 +126,7 @@ impl<F: Family> Fit<'_, '_, F> {
     fn ends(&self, last: &Node, vertex: &Point) -> Traced<Vec<Node>, F> {
         let chord = vertex - last.point;
         let end = |tangent| Node { point: *vertex, tangent };
-        // A chord comparable to the tolerance has no meaningful direction.
+        // A chord as short as the tolerance has no meaningful direction.
         if chord.norm() < SHORTEST * self.runs.scale {
             return Ok(vec![end(last.tangent)]);
         }
@@ -183,8 +185,8 @@ impl<F: Family> Fit<'_, '_, F> {
         let slope = self.runs.gradient(&found.point, self.margin, &tangent, self.radius)?;
         let Some(slope) = slope else { return Ok(None) };
         let node = Node { point: found.point, tangent: normal(&slope, &tangent) };
-        // Where the vertex lies beside the boundary, or the boundary turns just before it, every
-        // cubic up to it is as far off.
+        // If the vertex lies beside the boundary, or the boundary turns just before it, every cubic
+        // up to it has the same error.
         let better = self.error(&Cubic::between(last, &node), gradient)? <= 0.5 * error
             && self.best(&node, &slope, target)?.1 <= 0.5 * error;
         Ok(better.then_some((node, slope)))

@@ -54,9 +54,9 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// vanishes where the label changes.
 ///
 /// Zeros of monitors are found where a monitor has different signs at successive nodes, which are
-/// at most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself, along
-/// which their error is that of the monitor divided by its slope, or 1e-10 of the window's shorter
-/// extent.
+/// at most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself. Their
+/// error along it is the error of the monitor divided by its slope, or 1e-10 of the window's
+/// shorter extent.
 ///
 /// ```
 /// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};

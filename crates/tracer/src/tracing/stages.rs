@@ -39,7 +39,7 @@ impl<F: Family> Tracer<'_, F> {
             if std::mem::discriminant(&self.stage) != stage {
                 watch.report(Progress::Advance { steps: left });
                 watch.report(Progress::Begin { steps: ahead });
-                // The places around islands are those of the grid.
+                // Islands are searched around places of the grid.
                 if !matches!(self.stage, Stage::Islands { .. }) {
                     self.sampled.clear();
                 }
@@ -199,8 +199,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Searches between two neighbouring places of the stage, along the line from the place before
-    /// them to that after them, for regions that none of these places lies in.
+    /// Searches between two neighbouring places of the stage for regions in which no place lies.
+    /// The line leads from the place before the two to the place after them.
     fn search_slivers(
         &mut self,
         before: Option<usize>,

@@ -112,7 +112,7 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// Whether an accepted step is close to the boundary at the other place too at which errors
-    /// show. Where the margin does not exist, nothing tells otherwise.
+    /// show. Where the margin does not exist, the step counts as close.
     pub(crate) fn is_close(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
         let options = &self.runs.options;
         let most = SHOWN * options.interpolation * from.gradient.norm() + options.noise;

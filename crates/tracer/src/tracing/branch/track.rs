@@ -115,7 +115,7 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// The margins in the free runs at both ends of a step, except the margin that is followed, in
-    /// order: those on whose zeros the label is sure to change, or the others.
+    /// order: either the margins on whose zeros the label is sure to change, or the others.
     pub fn rivals(
         &self,
         from: &FootholdOf<F>,

@@ -77,7 +77,7 @@ impl Grid {
         self.leaves.extend_from_slice(places);
     }
 
-    /// Those of the places of the finest grid that are in no square of four places with one label.
+    /// The places of the finest grid that are in no square of four places with one label.
     pub fn narrow(&mut self, places: &[Place]) -> Vec<Place> {
         let mut narrow = Vec::new();
         for place in places {
