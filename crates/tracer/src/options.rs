@@ -35,7 +35,7 @@ pub struct TraceOptions {
     pub max_nodes: usize,
     /// The greatest number of curves, at least 1. A window that shows more of them before it is
     /// traced is refused. Since that count misses some, up to twice as many are traced; further
-    /// ones are reported as unresolved.
+    /// curves are reported as unresolved.
     pub max_curves: usize,
 }
 

@@ -25,7 +25,7 @@ pub struct Judge<'a, Label, Margin, Error> {
     beside: Vec<[bool; 2]>,
     /// The number of random points of the window.
     random: u64,
-    /// The number of those that have another label than their region.
+    /// The number of random points with another label than their region.
     wrong_random: u64,
 }
 
