@@ -143,7 +143,7 @@ impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Fi
     }
 }
 
-/// Tells the observer of a system what happens to the one that has been filled up.
+/// Reports to the observer of a system what happens to the filled system.
 pub(crate) struct Emptied<'a, O> {
     pub(crate) observer: &'a mut O,
     pub(crate) n: usize,

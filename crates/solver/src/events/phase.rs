@@ -99,8 +99,8 @@ impl<S: System> Phase<S> {
         self.guards[guard].direction() == Direction::Clock
     }
 
-    /// Whether guard `first` acts before guard `second` at one instant: that of higher priority, or
-    /// the one that is listed first.
+    /// Whether guard `first` acts before guard `second` at one instant: it has the higher priority,
+    /// or is listed first.
     pub(crate) fn precedes(&self, first: usize, second: usize) -> bool {
         let rank = |guard: usize| (-i16::from(self.guards[guard].rank()), guard);
         rank(first) < rank(second)

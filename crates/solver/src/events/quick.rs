@@ -21,7 +21,7 @@ use tables::{
 /// The rounding of a Bernstein coefficient, relative to the largest one.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// What the six values of a guard tell about its sign on the step.
+/// What the six values of a guard show about its sign on the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Quick {
     /// The guard is positive throughout.

@@ -90,9 +90,9 @@ impl Guard {
     /// Declares that the guard starts from a zero of this order whenever the mode is entered, also
     /// at the start of the run.
     ///
-    /// A guard that is exactly 0 there and rises does not need this. Two kinds of guards do: those
-    /// whose value may differ from 0 by rounding, and those with a double zero, because their side
-    /// after the zero could not be told otherwise.
+    /// A guard that is exactly 0 there and rises does not need this. Two kinds of guards do: guards
+    /// whose value may differ from 0 by rounding, and guards with a double zero, whose side after
+    /// the zero would be unknown otherwise.
     ///
     /// The zero is divided out before the search for roots. So the guard does not fire at the
     /// start, and nobody has to nudge the state away from it; a nudge or a dead time would miss a
@@ -132,9 +132,8 @@ impl Guard {
         Self { smooth: true, ..self }
     }
 
-    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, those
-    /// of higher priority act first, and those of one priority in the order in which they are
-    /// listed.
+    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, guards
+    /// of higher priority act first, and guards of equal priority in the order of the list.
     #[must_use]
     pub const fn priority(self, priority: i8) -> Self {
         Self { priority, ..self }
@@ -165,7 +164,7 @@ impl Guard {
         self.terminal == 1
     }
 
-    /// Whether six values tell enough: the guard is smooth, or not part of the mode.
+    /// Whether six values are enough: the guard is smooth, or not part of the mode.
     pub(crate) fn needs_no_look(&self) -> bool {
         self.smooth || !self.direction.has_values()
     }

@@ -21,7 +21,7 @@ impl Times {
     ///
     /// # Errors
     /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
-    /// ones count once.
+    /// times count once.
     pub fn new(mut times: Vec<f64>) -> Result<Self, InvalidTimes> {
         InvalidTimes::check(&times)?;
         if times.first() > times.last() {

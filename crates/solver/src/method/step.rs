@@ -94,8 +94,8 @@ impl<const N: usize> StepOf<State<N>> {
     }
 
     /// Takes the step `trial` and stores it here. The error of each component is relative to the
-    /// tolerances (`rtol`, `atol`) that `tolerances` returns for its index, and not to those of the
-    /// trial.
+    /// tolerances (`rtol`, `atol`) that `tolerances` returns for its index, and not to the
+    /// tolerances of the trial.
     #[inline(always)]
     pub fn take_with<M: Method>(
         &mut self,
