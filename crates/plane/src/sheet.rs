@@ -28,7 +28,8 @@ pub struct ToleranceRange {
     pub finest: f64,
     /// The usual one.
     pub usual: f64,
-    /// The coarsest: the tracer tells curves apart by 1e-8 of an ordinary window's shorter side.
+    /// The coarsest: the tracer distinguishes curves that are 1e-8 of an ordinary window's shorter
+    /// side apart.
     pub coarsest: f64,
 }
 
@@ -63,7 +64,7 @@ impl Sheet {
         self.chart.window(x, y)
     }
 
-    /// The errors of a place along both traced coordinates that come from that of margins.
+    /// The errors of a place along both traced coordinates that come from the error of margins.
     pub(crate) fn errors(&self) -> [f64; 2] {
         [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
     }

@@ -76,7 +76,7 @@ impl LateHalfSwing {
 ///
 /// Near the end, a time τ before it, L = τ^{3/2}/κ and q = |w| (τ − τ₀). The top is at τ = 3τ₀, and
 /// 1/R² = (27/4) τ₀/(κw)² there. This is smooth through τ₀ = 0, where y vanishes at the end. With a
-/// small ψ its zero is closer to that place than boundaries can be told apart.
+/// small ψ its zero is closer to that place than boundaries can be resolved.
 pub fn beyond_end<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
     let sign = half_swing_sign(k);
     let (y, w) = at_end(swing);

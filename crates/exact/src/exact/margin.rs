@@ -162,9 +162,8 @@ pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactErr
 }
 
 /// The margin `which` with hints that fit the collision of `contact`, as
-/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged,
-/// except that of a top which is the only one of its half swing: it gets the name that
-/// [`margins`] would give it.
+/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged.
+/// Only the margin of a half swing's single top gets the name that [`margins`] would give it.
 ///
 /// # Errors
 /// As [`margin`].
@@ -231,7 +230,7 @@ const AT_TURN: Place = Place::Minimum { near: Hint(0.0), number: TURN };
 /// The margins of the tops of R on one half swing, before the turns and after them.
 #[derive(Clone, Copy, Debug)]
 struct Tops {
-    /// Both margins. The only top of a half swing without a turn that would tell has both names.
+    /// Both margins. The only top of a half swing has both names if no turn decides.
     values: [Option<f64>; 2],
     /// Which name the only top is listed with.
     only: Option<usize>,

@@ -59,8 +59,8 @@ pub trait Trajectory: Debug + Sized {
     /// The root coordinates, from the start and from the end of contact, of the moment at which the
     /// halves meet.
     fn middle(&self) -> [f64; 2];
-    /// The unit of time in scaled time; the unit of κ is its inverse square, that of lengths
-    /// itself.
+    /// The unit of time in scaled time; the unit of κ is its inverse square, and the unit of
+    /// lengths is itself.
     fn time_unit(&self) -> f64 {
         1.0
     }

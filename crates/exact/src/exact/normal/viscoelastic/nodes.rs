@@ -307,7 +307,7 @@ impl Solved {
     /// The distance from `state`, the last one at a node before the end, to the end.
     ///
     /// With a weak damping Q vanishes at U = ±√(−βV/α): two zeros of Q that are close together. The
-    /// first of them is that of U − √(−βV/α), whose slope is nearly V. With a strong damping Q
+    /// first of them is the zero of U − √(−βV/α), whose slope is nearly V. With a strong damping Q
     /// decays, and Newton's steps approach its zero from the side on which they start. The last
     /// steps, with all digits, are for Q.
     fn until_end(&self, from: &State<DoubleDouble>) -> DoubleDouble {
