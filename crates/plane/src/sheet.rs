@@ -1,8 +1,4 @@
 //! A window in its traced coordinates, and the accuracy that boundaries can have in it.
-//!
-//! Margins leave ln κ and ln ψ open to 1e-13. In a window that is narrow in ψ, this is a large part
-//! of its height; but along the height it moves no boundary that runs up, and regions between such
-//! boundaries may be arbitrarily narrow in κ ([`Sheet::resolution_of`]).
 
 use stickslip_tracer::{Node, Point, Window};
 
@@ -69,8 +65,10 @@ impl Sheet {
         [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
     }
 
-    /// How closely a boundary can be known. One that runs along one coordinate is known as well as
-    /// places are along the other.
+    /// How closely a boundary can be known. A boundary that runs along one coordinate is known as
+    /// well as places are along the other. Nodes are solved for, and labels are computed beside
+    /// them, this closely: boundaries that meet at a vertex are close together even at a distance
+    /// that is large compared with the shorter side.
     pub(crate) fn noise(&self) -> f64 {
         let [one, other] = self.errors();
         if self.integrated { one.max(other) } else { one.min(other) }
@@ -95,7 +93,7 @@ impl Sheet {
     /// As [`Self::resolution`], for curves with these nodes.
     ///
     /// Margins leave the logarithms of both parameters open to 1e-13. In a window that is narrow in
-    /// one of them, this is much as a part of that side. It moves a boundary that runs along the
+    /// one of them, this is a large part of that side. It moves a boundary that runs along the
     /// side, but not one that runs across it.
     #[must_use]
     pub fn resolution_of<'n>(&self, nodes: impl Iterator<Item = &'n Node>, tolerance: f64) -> f64 {
@@ -122,8 +120,8 @@ impl Sheet {
         self.sides.map(|side| (side.high / side.low).ln())
     }
 
-    /// Refuses a window that is too narrow for the accuracy of its boundaries. The error calls both
-    /// parameters by their `names`.
+    /// Refuses a window that is too narrow for the accuracy of its boundaries. The error has the
+    /// `names` of both parameters.
     ///
     /// # Errors
     /// [`TooNarrow`] has the size of the window.

@@ -41,8 +41,7 @@
 //! as a does.
 //!
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
-//! is sampled on every step, also that of a readable system, and steps of the method locate its
-//! zeros.
+//! is sampled on every step, also in a readable system, and steps of the method locate its zeros.
 //!
 //! Only a rate that cannot be rounding counts: a guard must first move towards zero by a rate that
 //! exceeds its rounding. Otherwise a flat guard would have extrema without number, for example in a

@@ -47,8 +47,8 @@ pub trait Family {
         Ok(margin.clone())
     }
 
-    /// Whether the label changes wherever this margin passes through zero, if the itinerary that
-    /// leads to it is that of the free run.
+    /// Whether the label changes wherever this margin passes through zero, if the free run has the
+    /// itinerary that leads to it.
     ///
     /// Return `false` for a margin whose zero may leave the label unchanged. The tracer then
     /// follows it only where it has seen the label change. The default is that the label changes.

@@ -97,9 +97,9 @@ impl Itinerary {
 
 /// The runs of a problem.
 ///
-/// The label of a run is its [`Itinerary`]. Margins are those of the solver,
-/// [`stickslip_solver::Margin`]; they are complete if the start of the run and every transition
-/// without a [condition](HybridSystem::transition_condition) are smooth.
+/// The label of a run is its [`Itinerary`]. Margins are the solver's, [`stickslip_solver::Margin`];
+/// they are complete if the start of the run and every transition without a
+/// [condition](HybridSystem::transition_condition) are smooth.
 ///
 /// A run that accumulates switches or fails has no margins. Where such runs begin, the trace
 /// reports changes of the label as unresolved, with the labels on both sides; [`Self::outcome`]

@@ -45,8 +45,8 @@ const AROUND: f64 = 64.0;
 const VANISHES: f64 = 1e-3;
 /// If this part of a step is no wider than a point, time is resolved poorly on the step.
 const SHORT: f64 = 0.01;
-/// The least part of the step that may be a plateau. Differences of a guard are zero on shorter
-/// ones by their rounding.
+/// The least part of the step that may be a plateau. On a shorter part, differences of a guard may
+/// be zero by rounding.
 const PLATEAU: f64 = 1e-6;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;

@@ -29,8 +29,8 @@ use crate::system::{PerGuard, System};
 pub(crate) const LONGER: i32 = 26;
 
 impl<S: System> Examination<'_, S> {
-    /// Whether bounds decide about a guard of a readable system. Where one asks, `S::READABLE`
-    /// comes first: it is a constant, so that black boxes are compiled without the code for bounds.
+    /// Whether bounds decide about a guard of a readable system. In conditions, `S::READABLE` comes
+    /// first: it is a constant, so that black boxes are compiled without the code for bounds.
     #[inline(always)]
     fn has_bounds(&self, guard: usize) -> bool {
         !self.phase.guards[guard].is_smooth()

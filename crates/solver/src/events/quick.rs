@@ -5,7 +5,7 @@
 //! not declared to be smooth, three more are compared with them. All other cases go to
 //! [`crate::events::isolate`].
 //!
-//! The dense output is not used here: that of the 8(5,3) pair costs three more stages. A first look
+//! The dense output is not used here: with the 8(5,3) pair it costs three more stages. A first look
 //! at six states costs about a fifth of a cheap step.
 
 use crate::lists::{List, Shape};

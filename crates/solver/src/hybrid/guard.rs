@@ -192,7 +192,7 @@ impl Guard {
         self.smooth
     }
 
-    /// The priority with which the guard acts among those of one instant.
+    /// The priority with which the guard acts among the guards of one instant.
     pub(crate) fn rank(&self) -> i8 {
         self.priority
     }

@@ -148,7 +148,7 @@ pub enum Outcome {
     StepLimit,
     /// [`Options::max_switches`](crate::Options::max_switches) was reached.
     SwitchLimit,
-    /// The observer asked for it ([`Observer::stops`]).
+    /// The observer stopped the run ([`Observer::stops`]).
     Stopped,
     /// The switches accumulate.
     Zeno {

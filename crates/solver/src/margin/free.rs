@@ -169,7 +169,7 @@ impl<M: Method, S: System> Listing<'_, M, S> {
         }
     }
 
-    /// The guards of a mode, after those of the exits have fired.
+    /// The guards of a mode, after the guards of the exits have fired.
     fn guards(&self, mode: S::Mode) -> PerGuard<S, Guard> {
         let mut guards = guards_of(self.system, mode);
         for exit in &self.exits {

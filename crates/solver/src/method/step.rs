@@ -117,8 +117,8 @@ impl<const N: usize> StepOf<State<N>> {
 
     /// The dense output over the step.
     ///
-    /// This takes the stages of the step again, and then those of the dense output. A step does not
-    /// keep its stages, because few steps need them.
+    /// This takes the stages of the step again, and then the stages of the dense output. A step
+    /// does not keep its stages, because few steps need them.
     pub fn dense<M: Method>(
         &mut self,
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,

@@ -34,7 +34,7 @@ impl Abscissae {
         Self { groups, rounding }
     }
 
-    /// Whether a cubic between two places with one abscissa is vertical but for rounding.
+    /// Whether a cubic between two places with one abscissa is vertical up to rounding.
     pub fn is_straight(&self, cubic: &Cubic) -> bool {
         let first = cubic.points[0].x;
         cubic.points.iter().all(|point| (point.x - first).abs() <= 16.0 * self.rounding)

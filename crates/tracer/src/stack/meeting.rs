@@ -179,8 +179,8 @@ fn newton<F: Family>(
 /// Whether the third of three conditions passes through zero where the first two hold, as its slope
 /// says, when the third parameter passes.
 ///
-/// A margin behind a graze may vanish wherever two others do, for every value of the parameter, and
-/// be singular there, so that its slope does not tell.
+/// A margin behind a graze may vanish wherever two others do, for every value of the parameter. If
+/// it is singular there, its slope does not show this.
 fn is_passage<F: Family>(
     family: &impl Fn(f64) -> F,
     conditions: &Conditions<F::Margin>,

@@ -226,7 +226,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
-    /// Removes a vertex at which no curve ends. All later ones have other indices then.
+    /// Removes a vertex at which no curve ends. The indices of all later vertices change.
     fn remove_vertex(&mut self, index: usize) {
         self.stops.remove(index);
         self.network.vertices.remove(index);
@@ -437,7 +437,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
-    /// Removes curves. All later ones have other indices then.
+    /// Removes curves. The indices of all later curves change.
     pub fn remove_curves(&mut self, curves: &[usize]) {
         let mut removed = curves.to_vec();
         removed.sort_unstable();

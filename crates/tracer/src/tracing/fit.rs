@@ -83,7 +83,8 @@ pub(crate) enum Target {
 
 impl<F: Family> Fit<'_, '_, F> {
     /// The nodes behind `last` up to `target`. Cubics between them are as close to the boundary as
-    /// the options ask, or as shorter ones can be. `gradient` is that of the margin at `last`.
+    /// the options ask, or as shorter ones can be. `gradient` is the gradient of the margin at
+    /// `last`.
     pub fn nodes(&self, last: &Node, gradient: &Point, target: Target) -> Traced<Vec<Node>, F> {
         let (mut last, mut gradient) = (*last, *gradient);
         let mut nodes = Vec::new();
@@ -116,7 +117,7 @@ impl<F: Family> Fit<'_, '_, F> {
     }
 
     /// The node at a vertex behind `last`. Its tangent is normal to the gradient if there is one,
-    /// else that of the circle through `last`.
+    /// else tangent to the circle through `last`.
     pub fn end(&self, last: &Node, vertex: &Point) -> Traced<Node, F> {
         Ok(self.ends(last, vertex)?[0])
     }

@@ -27,7 +27,7 @@ pub struct Followed<Label, Margin> {
     pub ends: Option<[End<Margin>; 2]>,
     /// The values of each monitor at the nodes.
     pub values: Vec<Vec<f64>>,
-    /// Where monitors vanish, those of the first monitor first, each in the order of the nodes.
+    /// Where monitors vanish, ordered by monitor and then by node.
     pub zeros: Vec<MonitorZero>,
 }
 

@@ -90,7 +90,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         network
     }
 
-    /// The network as it is traced, up to some way beyond the window.
+    /// The network before it is cut: it reaches some way beyond the window.
     pub(super) fn uncut(&self) -> NetworkOf<F> {
         let mut network = self.builder.network.clone();
         self.count_runs(&mut network);
@@ -104,9 +104,9 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// The places where the curves found so far are extremal in a coordinate. They are solved for
     /// on the boundaries; along them, the error is about 1e-9 of the radius of curvature.
     ///
-    /// The ends of curves are not extrema. A curve whose direction is that of an axis to 1e-6 has
-    /// no extrema. On both sides of an extremum, before the next one or the end, the coordinate
-    /// must change by more than ten times `options.interpolation`.
+    /// The ends of curves are not extrema. A curve that is parallel to an axis to 1e-6 has no
+    /// extrema. On both sides of an extremum, before the next one or the end, the coordinate must
+    /// change by more than ten times `options.interpolation`.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.

@@ -24,7 +24,7 @@ use crate::window::Window;
 pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
-    /// The window that was asked for. The window of the runs and of the builder is larger.
+    /// The window of the caller. The window of the runs and of the builder is larger.
     pub(super) window: Window,
     /// The number of vertices around which boundaries were searched for.
     pub(super) probed: usize,

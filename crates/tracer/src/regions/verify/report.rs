@@ -36,7 +36,7 @@ pub enum Origin {
     },
 }
 
-/// A point at which the label is not that of its region.
+/// A point at which the label differs from the label of its region.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mismatch<Label> {

@@ -79,9 +79,9 @@ fn flattens<F: Family>(
     Ok(gradient.is_none_or(|gradient| gradient.norm() <= 0.1 * from.gradient.norm()))
 }
 
-/// The first place within a failed step where one of these margins vanishes together with that of
-/// the branch, and behind which the branch does not have its labels. Crossings come first: touches
-/// take many runs.
+/// The first place within a failed step where one of these margins vanishes together with the
+/// branch's margin, and behind which the branch does not have its labels. Crossings come first:
+/// touches take many runs.
 fn among<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -124,7 +124,7 @@ fn among<F: Family>(
     Ok(first(track, from, touches)?.map(|(point, off, margin)| special(point, off, margin)))
 }
 
-/// A place, its largest error, and the margin that vanishes there besides that of the branch.
+/// A place, its largest error, and the margin that vanishes there besides the branch's margin.
 type Met<Margin> = (Point, f64, Margin);
 
 /// The first of these places behind which the branch does not have its labels.
@@ -232,8 +232,8 @@ pub(crate) fn edge<F: Family>(
     }
 }
 
-/// The place between `from` and the end of the step where the boundary meets that of `margin`, and
-/// the largest error of this place. The boundaries cross or touch there.
+/// The place between `from` and the end of the step where the boundary meets the boundary of
+/// `margin`, and the largest error of this place. The boundaries cross or touch there.
 fn meet<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,

@@ -27,7 +27,7 @@ pub(crate) enum Attempt<Label, Margin> {
     Turn(f64),
     /// The new cubic is too far from the boundary, by this distance.
     Rough(f64),
-    /// The labels on the sides are not those of the branch.
+    /// The labels on the sides are not the labels of the branch.
     Labels(Foothold<Label, Margin>),
 }
 

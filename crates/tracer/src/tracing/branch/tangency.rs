@@ -2,12 +2,12 @@
 //!
 //! Behind the graze of a guard, everything that depends on when it fires has a square root in the
 //! margin r of the graze. Another margin there is m₀ + α √r + β r + …, and its boundary begins on
-//! that of the graze where m₀ = 0, as a parabola. The strip between the two boundaries is (m₀/α)²
-//! wide. Next to this place runs cannot resolve it. A branch along the graze with the labels of the
-//! far side runs past the place, and stalls where the strip becomes as wide as the offset of the
-//! runs. A branch with the labels of the strip stalls before the place. But m₀ can be followed
-//! along the boundary of the graze, by the polynomial in √r through the margin at four distances,
-//! and its zero is simple. Two distances must agree on it.
+//! the boundary of the graze where m₀ = 0, as a parabola. The strip between the two boundaries is
+//! (m₀/α)² wide. Next to this place runs cannot resolve it. A branch along the graze with the
+//! labels of the far side runs past the place, and stalls where the strip becomes as wide as the
+//! offset of the runs. A branch with the labels of the strip stalls before the place. But m₀ can be
+//! followed along the boundary of the graze, by the polynomial in √r through the margin at four
+//! distances, and its zero is simple. Two distances must agree on it.
 
 use crate::curve::VertexKind;
 use crate::family::Family;

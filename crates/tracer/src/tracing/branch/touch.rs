@@ -67,8 +67,9 @@ fn value_beside<L, M: PartialEq>(foothold: &Foothold<L, M>, margin: &M) -> Optio
 /// The place where a margin that dips along the boundary touches zero, or first crosses it. `guess`
 /// is the length from the middle foothold.
 ///
-/// The margin is lowest where its gradient is parallel to that of the branch. The secant method
-/// solves for this, because values near a minimum determine its place only to half the digits.
+/// The margin is lowest where its gradient is parallel to the gradient of the branch. The secant
+/// method solves for this, because values near a minimum determine its place only to half the
+/// digits.
 fn dip<F: Family>(
     track: &Track<'_, '_, F>,
     places: [&FootholdOf<F>; 3],

@@ -53,7 +53,7 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// The foothold at a place of the boundary, with free runs on both sides; `Err` if their labels
-    /// are not those of the branch.
+    /// are not the labels of the branch.
     ///
     /// If another boundary is closer than the offset of the free runs, smaller offsets are tried,
     /// down to the accuracy of the place.
