@@ -8,7 +8,9 @@
 //! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
-//! - For the same reason a contact may start in slip: [`Beginning`].
+//! - For the same reason a contact may start in slip: [`Beginning`]. The ratio of both forces at
+//!   the start is known in closed form, while a guard near zero would be decided by rounding. So
+//!   this start is not an event, and its margin exists beyond the contacts that start so.
 //!
 //! Neither greatest compression nor the beginning of attraction is a switch.
 //!

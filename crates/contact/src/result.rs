@@ -53,7 +53,8 @@ pub struct Switch {
 }
 
 /// Number of switches up to which a collision allocates nothing: no collision with κ below 240 has
-/// more.
+/// more. The switches lie in the collision itself; copying the longer struct costs the exact engine
+/// 1 % of its instructions.
 pub const FEW_SWITCHES: usize = 16;
 
 /// The switches of a collision. Up to [`FEW_SWITCHES`] of them are stored in the collision itself.

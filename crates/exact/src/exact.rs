@@ -5,7 +5,10 @@
 //! harmonically in time. Only the moments of the switches have to be solved for. Each is the single
 //! root of a function in a bracket on which the function is known to be monotone or to cross zero
 //! once. Nothing is searched by sampling, so that no switch is missed and none is invented. The
-//! functions that decide also tell how near the collision came to other switches: its [`margins`].
+//! functions that decide also give the [`margins`]: how near the collision came to other switches.
+//!
+//! The engine is the oracle of the integrator. It shares the contact, the result type and the names
+//! of margins with it, and nothing else: this crate lies below the integrator.
 //!
 //! Source files in reading order: `moment` and `slip` are what a collision is made of; `normal` is
 //! the interface of normal motions, with the closed form without damping and the expansion with it;
@@ -78,8 +81,8 @@ pub const MOST_SWITCHES: usize = 4_000_000;
 /// 1e-100.
 ///
 /// Cost: without damping 0.2 µs for each switch at every stiffness, with damping two to three times
-/// that, and twice as much again with a damping that is not that of the thread's last collision.
-/// The result is a pure function of `contact`.
+/// that, and twice as much again if the thread's last collision had another damping. The result is
+/// a pure function of `contact`.
 ///
 /// ```
 /// use stickslip_contact::Contact;

@@ -1,11 +1,13 @@
-//! Branches of equations as events.
+//! Branches of equations as events, which no observer is notified of.
 //!
 //! Where equations jump, by an `if` on what moves or by `floor`, a step that runs over the place is
 //! wrong, and one that does not see it misses it. So a run remembers on which side of each
 //! condition it is, in further components that only events change: the equations read those, and
-//! are smooth between events, and rules change them where a condition changes. They are taken out
-//! of what is found. Where sides would change without end, since both push towards the condition,
-//! equations choose as they are written.
+//! are smooth between events, and rules change them where a condition changes. These rules do not
+//! appear in results. So the engine finds jumps as it finds every event, and derivatives go through
+//! them. Where sides would change without end, since both push towards the condition, equations
+//! choose as they are written. In a plane of parameters systems are not rewritten, since boundaries
+//! are changes of the sequence of rules.
 
 use crate::graph::{Binary, Formula, Graph, Node, Unary, Variable};
 use crate::system::{Component, Rule, System, Trigger};

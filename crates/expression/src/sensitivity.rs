@@ -3,7 +3,8 @@
 //! Derivatives are further components of the state. Between events they obey the variational
 //! equations, and at an event they jump (Leine and Nijmeijer, *Dynamics and Bifurcations of
 //! Non-Smooth Mechanical Systems*, 2004, section 7.3). Both are formulas that [`Graph::slope`]
-//! makes from those of the system, whose branches are events.
+//! makes from those of the system, whose branches are events. So there is no second engine: error
+//! control, events and speed are those of any run.
 
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 use thiserror::Error;

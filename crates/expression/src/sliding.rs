@@ -6,7 +6,11 @@
 //! surface where a₁ < 0 < a₂, with (a₂ f₁ − a₁ f₂)/(a₂ − a₁), until a₁ or a₂ vanishes (Filippov,
 //! *Differential Equations with Discontinuous Righthand Sides*, 1988, §4).
 //!
-//! All of these are formulas. So a mode that slides becomes five ordinary ones:
+//! All of these are formulas. Therefore whatever works on systems as data works on sliding:
+//! printing, derivatives, atlases. On several surfaces the next mode is the solution of a small
+//! complementarity problem, which is not a formula; `stickslip_solver::sliding` solves it.
+//!
+//! A mode that slides becomes five ordinary ones:
 //!
 //! | mode | until | then |
 //! |---|---|---|

@@ -37,7 +37,7 @@ pub enum Engine {
     Dop853(Tolerances),
     /// Dormand–Prince 5(4).
     Dopri5(Tolerances),
-    /// The exact solution: that of the paper's law, or of a linear contact.
+    /// The exact solution of the paper's law, or of a linear contact.
     Exact,
     /// The best engine for a contact: the exact solution where its law is the paper's, otherwise
     /// Dormand–Prince 8(5,3).
@@ -101,10 +101,10 @@ impl Tolerances {
 
 impl Engine {
     /// The engine that a program's options choose: a method by its [`Self::name`], and tolerances,
-    /// whose defaults are those of the method.
+    /// whose defaults depend on the method.
     ///
-    /// `auto` is the exact solution, whose range contains that of the integrators, unless a
-    /// tolerance asks for an integration.
+    /// `auto` is the exact solution, whose range contains the range of the integrators, unless a
+    /// tolerance requires an integration.
     ///
     /// # Errors
     /// [`InvalidChoice`]: no method has this name, a tolerance would have no effect, or is out of
@@ -172,7 +172,7 @@ impl Engine {
     #[must_use]
     pub fn resolved(self, contact: &Contact) -> Self {
         match self {
-            // The range of the exact solution contains that of the integrators.
+            // The range of the exact solution contains the range of the integrators.
             Self::Auto if contact.obeys_paper() => Self::Exact,
             Self::Auto => Self::Dop853(Tolerances::DOP853),
             chosen => chosen,
@@ -226,10 +226,10 @@ impl Engine {
     }
 
     /// The collision of `contact` with its course. An integrator computes both with one run; the
-    /// course of the exact solution is that of [`Self::history`].
+    /// course of the exact solution comes from [`Self::history`].
     ///
-    /// The collision is bit for bit that of [`Self::collide`]. The integrator's work is that of the
-    /// run that keeps the course, which repeats some steps.
+    /// The collision equals the result of [`Self::collide`], bit for bit. The integrator's work
+    /// belongs to the run that keeps the course, which repeats some steps.
     ///
     /// # Errors
     /// As [`Self::collide`]; or the course, which is always integrated, is out of the integrator's

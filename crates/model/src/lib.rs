@@ -13,8 +13,8 @@
 //!
 //! | crate or folder | modules |
 //! |---|---|
-//! | `stickslip-contact` | [`Law`]: a contact law as data; [`presets`]: those of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems; what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
-//! | `stickslip-exact` | [`exact`]: the solution of the paper's law; [`linear`]: that of linear contacts |
+//! | `stickslip-contact` | [`Law`]: a contact law as data; [`presets`]: laws of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems; what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
+//! | `stickslip-exact` | [`exact`]: the solution of the paper's law; [`linear`]: the solution of linear contacts |
 //! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
 //! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
 //! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |

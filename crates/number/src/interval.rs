@@ -1,4 +1,7 @@
 //! Interval arithmetic: sets of numbers between two doubles.
+//!
+//! It is our own, since the maintained crates need GMP and MPFR, or lack functions. A guard needs
+//! ten operations and a dozen functions, which are tested against random values.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -9,7 +9,9 @@ use crate::range::Range;
 /// They are x = ln(κ/κ₀)/w and y = ln(1 + (ψ − ψ₀)/s)/h. Windows of an ordinary shape have the
 /// [plain](Self::PLAIN) chart, ln κ and ln(1 + ψ). One that is narrow, long, or reaches to small ψ
 /// has a chart of its own, in which its sides are ln κ and ln ψ from 0 to 1: then lengths relative
-/// to the window mean the same in both directions, and no digits are lost in a small window.
+/// to the window mean the same in both directions, and no digits are lost in a small window. In the
+/// plain chart a window of 8 by 1e-5 would be crossed in steps of 1e-7, and one of 1e-6 by 1e-6 at
+/// κ = 1000 would have lost ten digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Chart {

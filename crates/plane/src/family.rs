@@ -45,7 +45,7 @@ use crate::sheet::Sheet;
 pub struct CollisionPlane {
     sheet: Sheet,
     parameters: Parameters,
-    /// The contact at the lower ends of both parameters. Its law is that of all.
+    /// The contact at the lower ends of both parameters. All contacts have its law.
     first: Contact,
 }
 
@@ -61,6 +61,10 @@ enum Parameters {
 }
 
 /// Collisions as a family of runs. The label of a run is the list of the guards that fired.
+///
+/// The paper's law is traced with the exact engine. Its margins are the numbers by which it
+/// decides, and take a fortieth of the instructions of integrated ones. The integrator, which then
+/// has no part in the atlas, verifies it.
 #[derive(Clone, Copy, Debug)]
 pub enum CollisionFamily {
     /// Computed by the exact solution.
@@ -69,7 +73,7 @@ pub enum CollisionFamily {
     Integrated(HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>),
     /// Collisions with another law than the paper's, computed by integration.
     General(GeneralFamily),
-    /// Collisions with any law, with labels that also tell whether |ε_t| is above 1.
+    /// Collisions with any law, with labels that also say whether |ε_t| is above 1.
     Gaining(GainingFamily),
 }
 
@@ -105,9 +109,9 @@ impl CollisionPlane {
         Ok(Self { sheet, parameters: Parameters::Scaled, first })
     }
 
-    /// Impacts of a pair at one speed, at different angles: κ is that of normal incidence, and ψ
-    /// belongs to the angle at which tan θ = ψ μ/α. Stiffness and damping of the collisions depend
-    /// on the normal velocity.
+    /// Impacts of a pair at one speed, at different angles: κ belongs to normal incidence, and ψ to
+    /// the angle at which tan θ = ψ μ/α. Stiffness and damping of the collisions depend on the
+    /// normal velocity.
     ///
     /// # Errors
     /// [`InvalidParameter`]: a value that no collision can have.
@@ -230,7 +234,7 @@ impl CollisionPlane {
 
     /// The collision at a traced point.
     ///
-    /// The tracer also asks for places a little outside the window, where ψ could fall to 0 or
+    /// The tracer also computes places a little outside the window, where ψ could fall to 0 or
     /// below. There ψ is kept at half of the window's lower end.
     ///
     /// # Errors
@@ -266,13 +270,13 @@ impl CollisionPlane {
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
     }
 
-    /// The collisions, integrated as those of any law, with one more boundary: where |ε_t| is 1.
+    /// The collisions, integrated as for any law, with one more boundary: where |ε_t| is 1.
     #[must_use]
     pub fn gaining(self) -> CollisionFamily {
         CollisionFamily::Gaining(GainingFamily::new(self))
     }
 
-    /// The collisions as those of any law are integrated.
+    /// The collisions, integrated as for any law.
     fn general(self) -> GeneralFamily {
         GeneralFamily::new(self, precise())
     }

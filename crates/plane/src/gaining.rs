@@ -25,8 +25,8 @@ pub struct Gaining {
     pub tolerance: f64,
     plane: CollisionPlane,
     family: CollisionFamily,
-    /// All regions in traced coordinates, also those of the switches, which divide those that are
-    /// asked for; with what speaks against them.
+    /// All regions in traced coordinates, with what speaks against them. Changes of the switches
+    /// divide the regions of |ε_t| further.
     pub atlas: Atlas<Vec<usize>, Margin>,
 }
 
@@ -73,7 +73,7 @@ pub struct Line {
 ///
 /// # Errors
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
-/// make regions. What cannot be resolved is not an error: [`Gaining::agrees`] tells.
+/// make regions. An unresolved boundary is not an error: see [`Gaining::agrees`].
 pub fn trace<'w>(
     frame: Frame,
     tolerance: f64,
@@ -114,7 +114,7 @@ impl Gaining {
     }
 
     /// Whether |ε_t| of the collision with κ and ψ of a contact is above 1; damping and law are
-    /// those of the window. On a line, and where regions are in doubt, the collision itself
+    /// taken from the window. On a line, and where regions are in doubt, the collision itself
     /// decides. `None` outside of the window, and where the collision cannot be computed.
     #[must_use]
     pub fn gains(&self, contact: &Contact) -> Option<bool> {

@@ -24,7 +24,8 @@ pub struct ToleranceRange {
     pub finest: f64,
     /// The usual one.
     pub usual: f64,
-    /// The coarsest: the tracer tells curves apart by 1e-8 of an ordinary window's shorter side.
+    /// The coarsest: the tracer distinguishes curves that are 1e-8 of an ordinary window's shorter
+    /// side apart.
     pub coarsest: f64,
 }
 
@@ -59,13 +60,15 @@ impl Sheet {
         self.chart.window(x, y)
     }
 
-    /// The errors of a place along both traced coordinates that come from that of margins.
+    /// The errors of a place along both traced coordinates that come from the error of margins.
     pub(crate) fn errors(&self) -> [f64; 2] {
         [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
     }
 
-    /// How closely a boundary can be known. One that runs along one coordinate is known as well as
-    /// places are along the other.
+    /// How closely a boundary can be known. A boundary that runs along one coordinate is known as
+    /// well as places are along the other. Nodes are solved for, and labels are computed beside
+    /// them, this closely: boundaries that meet at a vertex are close together even at a distance
+    /// that is large compared with the shorter side.
     pub(crate) fn noise(&self) -> f64 {
         let [one, other] = self.errors();
         if self.integrated { one.max(other) } else { one.min(other) }
@@ -90,7 +93,7 @@ impl Sheet {
     /// As [`Self::resolution`], for curves with these nodes.
     ///
     /// Margins leave the logarithms of both parameters open to 1e-13. In a window that is narrow in
-    /// one of them, this is much as a part of that side. It moves a boundary that runs along the
+    /// one of them, this is a large part of that side. It moves a boundary that runs along the
     /// side, but not one that runs across it.
     #[must_use]
     pub fn resolution_of<'n>(&self, nodes: impl Iterator<Item = &'n Node>, tolerance: f64) -> f64 {
@@ -117,8 +120,8 @@ impl Sheet {
         self.sides.map(|side| (side.high / side.low).ln())
     }
 
-    /// Refuses a window that is too narrow for the accuracy of its boundaries. The error calls both
-    /// parameters by their `names`.
+    /// Refuses a window that is too narrow for the accuracy of its boundaries. The error has the
+    /// `names` of both parameters.
     ///
     /// # Errors
     /// [`TooNarrow`] has the size of the window.

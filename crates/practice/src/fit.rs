@@ -3,8 +3,8 @@
 //! [`run`] finds the tangential stiffness and the friction, or another number, with which a contact
 //! law comes closest to measured restitution, spins or rebound angles. Such problems have many
 //! minima: the tangential spring swings more often in a contact when it is stiffer, and at each
-//! further swing the data may be met again. All of them in a range are found, told, and taken into
-//! account by the intervals.
+//! further swing the data may be met again. All minima in a range are found and reported, and the
+//! intervals take them into account.
 //!
 //! 1. The damping is fitted to ε_n alone, on which the tangential motion has no effect; or it
 //!    follows from a given ε_n.
@@ -19,8 +19,8 @@
 //!    pieces.
 //! 5. The angles at which the switches of the best fit change are traced.
 //!
-//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what
-//! is asked), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
+//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (the
+//! question), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
 //! `quantile`, `intervals`, `normal` (damping), `course`, `picture`.
 
 mod axis;
@@ -69,7 +69,7 @@ pub struct Fit {
     pub law: Law,
     /// α.
     pub alpha: f64,
-    /// The speed in m/s of which "at normal incidence" is told: the largest of the data. `None` in
+    /// The speed in m/s to which "at normal incidence" refers: the largest of the data. `None` in
     /// scaled units.
     pub speed_m_per_s: Option<f64>,
     /// κ at normal incidence of a tangential stiffness of 1, in the unit of [`Minimum::stiffness`].

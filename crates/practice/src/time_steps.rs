@@ -3,19 +3,19 @@
 //! A particle code computes a contact in steps of fixed length. Its results have errors of the
 //! order of the step, which depend on where in a step the contact begins. [`run`] computes impacts
 //! in the steps of a code ([`Scheme`]) and without steps ([`Engine::Auto`]), and measures the
-//! difference in ε_t, in ε_n and in the energy after the contact. Steps are told as numbers t_c/dt
-//! in the undamped contact time t_c ([`undamped_contact_time`]).
+//! difference in ε_t, in ε_n and in the energy after the contact. Steps are given as numbers t_c/dt
+//! of steps in the undamped contact time t_c ([`undamped_contact_time`]).
 //!
 //! Start reading here; then, in this order: `scheme` (what codes do in a step), `stepped` (one
 //! collision in steps), `settings`, `measure` (errors over impacts and start phases), `picture`,
 //! `seconds` (times in SI units).
 //!
-//! Against LAMMPS itself, in 264 impacts with 28 laws: the root mean square of the error of ε_t is
-//! within 0.3 % at t_c/20, 2.5 % at t_c/50 and 3.1 % at t_c/100 of what LAMMPS' own collisions
-//! have, but for five elastic ones at t_c/100, whose errors below 4e-6 feel the overlap of LAMMPS'
-//! spheres (`docs/validation.md`).
+//! Against LAMMPS itself, in 264 impacts with 28 laws: the root mean square of the error of ε_t
+//! differs from the error of LAMMPS' own collisions by at most 0.3 % at t_c/20, 2.5 % at t_c/50 and
+//! 3.1 % at t_c/100. Exceptions are five elastic impacts at t_c/100, whose errors below 4e-6 depend
+//! on the overlap of LAMMPS' spheres (`docs/validation.md`).
 //!
-//! What the overlap does to the geometry of a contact is not in these errors: it is that of a
+//! The effect of the overlap on the geometry of a contact is not in these errors: the contact is a
 //! point.
 
 mod measure;
@@ -60,7 +60,7 @@ pub struct TimeSteps {
 ///
 /// It takes about 15 ns for each step of each contact, and memory for 40 bytes times impacts times
 /// phases. A time step that occurs twice is measured once. The results without steps are good to
-/// about 1e-12: errors of this size are those of either.
+/// about 1e-12: errors of this size may come from either.
 ///
 /// # Errors
 /// [`TimeStepsError`]: the settings are out of range, or an impact cannot be computed without

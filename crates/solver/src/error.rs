@@ -2,7 +2,7 @@
 
 use crate::options::InvalidOption;
 
-/// The reason for which a run failed. Every variant carries the numbers that tell where.
+/// Why a run failed. Every variant carries the numbers that say where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
     /// An option is out of its range.
@@ -76,10 +76,10 @@ pub enum RunError {
          are numbers"
     )]
     Schedule {
-        /// Where the next time was asked for.
+        /// The place from which the next time was computed.
         s: f64,
     },
-    /// Transitions lead from one to the next and no time passes
+    /// Transitions lead to further transitions and no time passes
     /// ([`Options::max_at_one_instant`](crate::Options::max_at_one_instant)). Observers do not keep
     /// these transitions.
     #[error(
@@ -112,7 +112,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// No step from `s`, the last one of size `h`, resolves a guard. `known` tells whether it has
+    /// No step from `s`, the last one of size `h`, resolves a guard. `known` says whether it has
     /// values there.
     pub(crate) fn unresolved(guard: usize, (s, h): (f64, f64), known: bool) -> Self {
         if known {

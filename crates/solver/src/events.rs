@@ -1,5 +1,12 @@
 //! One step and its guards: which guard fires first, and where.
 //!
+//! Nearly all guards on nearly all steps are of one sign throughout, or fall once; the first look
+//! at a guard recognises both. The other guards are isolated, one by one. Once an event is located,
+//! one evaluation there says which other guards may fire no later, and only these are located too.
+//! An event that changes neither mode nor state is noted, and the search goes on behind it on the
+//! same step. A guard is recognised in another mode by its values: it is the same guard if it has
+//! the same values, or their negatives, at three places of the step.
+//!
 //! The files, in reading order:
 //!
 //! | file | content |

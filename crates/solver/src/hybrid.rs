@@ -68,9 +68,9 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         [Enclosure::ENTIRE; G]
     }
 
-    /// Bounds for the rates of the guards of `mode`, with bounds for time and state. They tell
-    /// margins what of a rate is rounding. A [`ReadableSystem`] provides them by itself; of other
-    /// systems, the noise of rates is measured.
+    /// Bounds for the rates of the guards of `mode`, with bounds for time and state. Margins use
+    /// them to bound the rounding of a rate. A [`ReadableSystem`] provides them by itself; for
+    /// other systems, the noise of rates is measured.
     fn enclose_rates(&self, _mode: Self::Mode, _s: Interval, _y: &[Interval; N]) -> [Interval; G] {
         [Interval::ENTIRE; G]
     }
@@ -79,7 +79,9 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ///
     /// A mode that starts from a known zero may need more state, or another form of its guards, as
     /// long as a guard is so near to that zero that its usual form would be rounding alone. This
-    /// function then replaces it by a mode that has the same solutions.
+    /// function then replaces it by a mode that has the same solutions. It should not do so where
+    /// the usual form would be rounding still: after a short step, such a guard ends the phase at
+    /// once.
     #[inline]
     fn settle(&self, mode: Self::Mode, _y: &State<N>) -> Self::Mode {
         mode
@@ -89,7 +91,7 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ///
     /// The error of a step is controlled for the state. Where guards depend on differences that are
     /// much smaller than the state, because a singular end is near for example, this function names
-    /// the length on which they change. A length that is not positive counts as none.
+    /// the length on which they change. A length that is not positive sets no limit.
     #[inline]
     fn longest_first_step(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> f64 {
         f64::INFINITY
@@ -99,7 +101,8 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ///
     /// The provided version works for every system. If the right-hand sides of the modes differ
     /// in cost, a system may give each mode a step of its own, compiled for that right-hand side
-    /// alone.
+    /// alone. In the collision of spheres, slip uses two of eight components; the stages of the
+    /// others vanish when it is compiled.
     #[inline]
     fn step<M: Method>(&self, mode: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
         step.take::<M>(&mut |s, y| self.field(mode, s, y), trial);
@@ -150,8 +153,9 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     }
 
     /// A number that is positive where [`Self::transition`] takes one branch, and negative where it
-    /// takes another one, for instance a slope of a guard that tells sliding from crossing. It is
-    /// NaN if the transition does not branch; the provided version always returns NaN.
+    /// takes another one, for instance a slope of a guard that decides between sliding and
+    /// crossing. It is NaN if the transition does not branch; the provided version always returns
+    /// NaN.
     ///
     /// Only margins ([`mod@crate::margin`]) use it: the itinerary may change where it is zero.
     fn transition_condition(

@@ -93,19 +93,19 @@
 //! | question | answer |
 //! |---|---|
 //! | a guard starts on zero | It fires at the start if it leaves zero in its direction, and otherwise not. After [`Guard::from_zero`] it does not fire there, unless it is [`Below`](Direction::Below) and becomes negative. |
-//! | a guard touches zero | It does not fire. Where the dense output cannot tell a touch from a crossing, a step of the method decides, and [`Observer::on_grazing`] reports it, once and not before what comes first. |
+//! | a guard touches zero | It does not fire. Where the dense output cannot distinguish a touch from a crossing, a step of the method decides, and [`Observer::on_grazing`] reports it, once and in order. |
 //! | a guard has a pole | It does not fire, and [`Observer::on_pole`] reports it. Where a guard is [`Below`](Direction::Below), the domain ends there, and it fires. |
 //! | a guard has no value (NaN) | An error, unless the run ends before. |
-//! | several guards at one instant | Times that the errors of their location do not tell apart are one instant. All guards act there, each once: those of higher [priority](Guard::priority) first, and then in the order of the list. |
-//! | … and the first one changes the state or the mode | A guard that has crossed zero acts on the state as it is then. If the mode does not have it when its turn comes, it is reported ([`Observer::on_preempted`]). A [`Below`](Direction::Below) guard is asked again. |
+//! | several guards at one instant | Times are one instant if the errors of their location overlap. All guards act there, each once: guards of higher [priority](Guard::priority) first, and then in the order of the list. |
+//! | … and the first one changes the state or the mode | A guard that has crossed zero acts on the state as it is then. If the mode does not have it when its turn comes, it is reported ([`Observer::on_preempted`]). A [`Below`](Direction::Below) guard is evaluated again. |
 //! | … and a transition leaves a guard on its own zero | It does not fire again at that instant. |
-//! | a transition carries a guard across zero | That is no crossing, unless the guard [sees jumps](Guard::sees_jumps). |
+//! | a transition carries a guard across zero | That is not a crossing, unless the guard [sees jumps](Guard::sees_jumps). |
 //! | transitions at one instant without an end | An error that names the cycle ([`RunError::Cycle`]); observers do not keep them. |
 //! | a clock and the start of the run | A time that is the start counts. |
 //! | a guard crosses zero at the end of the span | It fires. The outcome is [`Outcome::EndedByGuard`] if it is terminal, and else [`Outcome::ReachedEnd`]. |
 //! | the state at an event | It always comes with the event: [`SwitchEvent::before`] lies on the guard, and [`SwitchEvent::after`] follows from the transition. |
 //! | [`Guard::terminal_after`] k events | The k-th firing ends the run at its place, without a transition, also if several lie on one step. |
-//! | an observer that stops | It is asked after every switch and every step. The run ends there, at a switch with the state after it. |
+//! | an observer that stops | It is called after every switch and every step. The run ends there, at a switch with the state after it. |
 //! | output times at switches and at the end | [`Samples`] and [`Recorder`] give the state after the switch. [`Samples`] at the end of the run gives the final state exactly. |
 //! | tolerances | Scalars in [`Options`]. [`Weighted`] has a relative and an absolute one for each component. |
 //! | the method | A type, compiled into the run. [`run_with`] chooses it at run time, with the same results bit for bit. |

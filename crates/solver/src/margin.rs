@@ -1,7 +1,7 @@
 //! Margins: how near a run came to other switches.
 //!
-//! The itinerary of a run changes, as the parameters of a system change, where one of these numbers
-//! passes through zero, the *margins* of the run:
+//! The *margins* of a run are the numbers below. As the parameters of a system change, the
+//! itinerary changes where one of them passes through zero:
 //!
 //! - a guard at a local extremum, where it touches zero ([`Place::Minimum`], [`Place::Maximum`])
 //! - a guard at the end of the run ([`Place::End`])
@@ -14,33 +14,40 @@
 //! There are no others, as long as the starts of the run and all transitions are smooth. Up to the
 //! first change, two runs have the same exits, and their states depend smoothly on the parameters.
 //! In the phase where they differ, a guard fires in one of them and not at nearly the same place in
-//! the other one. So a zero of that guard is not a simple one, or it lies at the start of the phase
-//! or at its end; and the phase ends with the run, at the zero of another guard, or both go through
-//! the same guard and are sent to different modes.
+//! the other one. So a zero of that guard is not simple, or it lies at the start or the end of the
+//! phase. Or both runs leave by the same guard for different modes. A phase ends at the zero of
+//! another guard, or with the run.
+//!
+//! Not listed are zeros of order three and more at a start, guards that jump or have poles, and
+//! transitions that branch without a condition. The tracer reports a label that changes there as
+//! unresolved.
 //!
 //! To follow a margin to zero and beyond, the itinerary up to it is prescribed: in every phase,
 //! only the guard that should end the phase may fire. The margin is then a smooth function of the
-//! parameters on both sides of zero. Two margins exist on one side only: that of a phase behind a
-//! transition that branches, up to where the other branch begins; and that of a phase behind a
-//! guard that fires, up to where this guard is beyond zero as its phase begins.
+//! parameters on both sides of zero. Two kinds of margins exist on one side only. The margin of a
+//! phase behind a transition that branches exists up to where the other branch begins. The margin
+//! of a phase behind a guard that fires exists up to where this guard is beyond zero as its phase
+//! begins.
 //!
 //! The zero of a guard at the start of a phase or at an exit need not change the itinerary: a guard
 //! that is negative from the start on fires as it would have done soon after.
 //!
 //! Where a guard starts its phase from a zero of known order
-//! ([`Guard::from_zero`](crate::Guard::from_zero)), the extrema are those of the guard divided by
-//! that power of the time since the start. They vanish where those of the guard do. But near the
-//! start the guard's own extrema merge in pairs, and change little with the parameters.
+//! ([`Guard::from_zero`](crate::Guard::from_zero)), the extrema are taken of the guard divided by
+//! that power of the time since the start. They vanish together with the guard's own extrema. But
+//! near the start the guard's own extrema merge in pairs, and change little with the parameters.
+//! For example, the minimum of aθ + bθ² + cθ³ grazes zero at a = b²/(4c) and merges with the
+//! maximum close behind, at a = b²/(3c). Divided by θ, the minimum exists for every a and changes
+//! as a does.
 //!
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
-//! is sampled on every step, also that of a readable system, and steps of the method locate its
-//! zeros.
+//! is sampled on every step, also in a readable system, and steps of the method locate its zeros.
 //!
 //! Only a rate that cannot be rounding counts: a guard must first move towards zero by a rate that
-//! exceeds its rounding. Otherwise a guard that is flat, as that of a system which leaves rest like
-//! t⁴ or slower, would have extrema without number. The rounding of a rate is bounded by enclosures
-//! if the system is readable. That of a black box is what one rounding of each value makes of a
-//! difference, and its noise, measured where each step starts.
+//! exceeds its rounding. Otherwise a flat guard would have extrema without number, for example in a
+//! system that leaves rest like t⁴ or slower. The rounding of a rate is bounded by enclosures if
+//! the system is readable. For a black box it is the effect of one rounding of each value on a
+//! difference, and the noise, measured where each step starts.
 
 mod free;
 mod name;
@@ -91,8 +98,8 @@ pub struct Margins {
 /// does not bound the domain of its mode, and each extremum takes about two steps more. A guard
 /// that changes by no more than its rounding has no extrema. It has no margins behind a place where
 /// its rate cannot be followed, for instance because it is zero from there on. A run that ends
-/// early has none at all, but one that ends at [`Options::max_switches`] has those of its phases up
-/// to there.
+/// early has no margins, except that a run that ends at [`Options::max_switches`] has the margins
+/// of its phases up to there.
 ///
 /// # Errors
 /// Those of [`run`](crate::run).
@@ -187,9 +194,9 @@ pub struct Followed<Run> {
 
 /// The run that follows an itinerary.
 ///
-/// What a run arrives at has kinks where the itinerary changes. With the itinerary prescribed it is
-/// a smooth function of the parameters. The result is `None` if the run cannot follow the
-/// itinerary, or if the system does not have its guards.
+/// The state at which a run arrives has kinks where the itinerary changes. With the itinerary
+/// prescribed it is a smooth function of the parameters. The result is `None` if the run cannot
+/// follow the itinerary, or if the system does not have its guards.
 ///
 /// # Errors
 /// Those of [`run`](crate::run).

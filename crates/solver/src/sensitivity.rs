@@ -79,8 +79,7 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
     pub end: SwitchSensitivity<Mode, N, P>,
     /// Why the run ended.
     pub outcome: Outcome,
-    /// The work done. One evaluation of the right-hand side is that of state and derivatives
-    /// together.
+    /// The work done. One evaluation of the right-hand side covers state and derivatives together.
     pub statistics: Statistics,
 }
 
@@ -88,9 +87,9 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 /// parameters.
 ///
 /// The derivatives of the state at the start are `start_derivatives`. State and derivatives
-/// together are `A` = N (1 + P) numbers, and the caller has to name `A`. Error control covers all
-/// of them, so derivatives are about as accurate as the state. The derivatives hold for an
-/// unchanged itinerary. They grow without bound towards a graze.
+/// together are `A` = N (1 + P) numbers. Error control covers all of them, so derivatives are about
+/// as accurate as the state. The derivatives hold for an unchanged itinerary. They grow without
+/// bound towards a graze.
 ///
 /// ```
 /// use stickslip_solver::{
@@ -144,6 +143,9 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 /// assert!((found.switches[1].s_derivatives[0] - 2.0 * velocity / 9.81).abs() < 1e-14);
 /// # Ok::<(), stickslip_solver::RunError>(())
 /// ```
+///
+/// The caller names A = N (1 + P), since stable Rust cannot compute the length of an array from two
+/// others. A wrong A does not compile.
 ///
 /// # Errors
 /// Those of [`run`]. [`RunError::State`] is also returned if a switch is a graze, where derivatives
@@ -213,8 +215,8 @@ struct Varied<'a, S, const N: usize, const P: usize> {
 }
 
 impl<S, const N: usize, const P: usize> Varied<'_, S, N, P> {
-    /// The derivatives of the place where `guard` fires at the state `y`, and those of the state at
-    /// that moving place.
+    /// The derivatives of the place where `guard` fires at the state `y`, and of the state at that
+    /// moving place.
     fn moved<const G: usize, const A: usize>(
         &self,
         mode: S::Mode,

@@ -52,13 +52,13 @@
 //!
 //! # What is decided, and what is refused
 //!
-//! Wherever the solution reaches surfaces, leaves them, or is moved by the system's own guards, it
-//! is decided anew how it goes on, for all surfaces on which it lies then. Where it could go on in
-//! several ways, it keeps the sides that it has, and [`SlidingMode::is_unique`] says so; a start
-//! needs [`Filippov::mode_from`]. Where that is no way to go on, where the equations for the
-//! multipliers are singular, or where the field is not affine in the signs, the mode that follows
-//! is a [`Refusal`], and the run ends with [`RunError::Field`](crate::RunError::Field). The same
-//! error ends a run that slides to where it ceases to be attracted to several surfaces.
+//! How the solution goes on is decided wherever it reaches surfaces, leaves them, or is moved by
+//! the system's own guards, for all surfaces on which it lies then. Where it could go on in several
+//! ways, it keeps its sides, and [`SlidingMode::is_unique`] says so; a start needs
+//! [`Filippov::mode_from`]. Where it cannot keep them, where the equations for the multipliers are
+//! singular, or where the field is not affine in the signs, the mode that follows is a [`Refusal`],
+//! and the run ends with [`RunError::Field`](crate::RunError::Field). The same error ends a run
+//! that slides to where it ceases to be attracted to several surfaces.
 //!
 //! A run cannot go backwards through a surface along which it slides: how long it has been there
 //! is not known. Nor does it go backwards through other surfaces: it is refused.
@@ -72,6 +72,15 @@
 //! the state is moved onto the surface, along the difference of the fields.
 //!
 //! A step that slides along k surfaces evaluates k + 1 fields for each one of another step.
+//!
+//! The field is not stabilised: a term that pulls the state back would change the field and need a
+//! rate of its own.
+//!
+//! # Why this is a system and not a part of the engine
+//!
+//! On a surface, a solution has a field, a domain and a place where it ends: all that makes a mode.
+//! So events, margins, sensitivities and atlases need to know nothing of sliding, and what makes
+//! them better makes sliding better.
 //!
 //! [`SampledFilippov`] does the same with a [`SwitchedDynamic`] system, whose functions cannot be
 //! read and whose dimension and surfaces may be known at run time only.
@@ -104,7 +113,7 @@ fn guards_of(surfaces: &Sides) -> [[Guard; 2]; MOST] {
     })
 }
 
-/// What a guard that has fired says about the surfaces, whose functions have these values there.
+/// What a guard that has fired implies for the surfaces, whose functions have these values there.
 fn cause_of(surfaces: &Sides, guard: usize, values: impl Fn() -> Row<f64>) -> Cause<'static> {
     let surface = guard / 2;
     if surface >= surfaces.count {

@@ -20,7 +20,7 @@ pub(crate) type PerComponent<S, T> = <<S as System>::Components as Shape>::Of<T>
 /// Room for what lives during one call: new arrays, which cost nothing, or buffers that are used
 /// again.
 pub(crate) struct Room<S: System> {
-    /// The number of components, and that of guards of the active mode.
+    /// The number of components, and the number of guards of the active mode.
     pub(crate) n: usize,
     pub(crate) guards: usize,
     states: Vec<S::State>,
@@ -181,7 +181,7 @@ pub(crate) trait System: Sized {
     );
     /// Bounds of a guard's rate, where time and state are known up to their last digit.
     fn enclose_rate(&self, mode: Self::Mode, s: f64, y: &Self::State, guard: usize) -> Interval;
-    /// The number whose sign says which branch a transition takes, NaN if it has none.
+    /// The number whose sign says which branch a transition takes, NaN if it does not branch.
     fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &Self::State) -> f64;
     fn settle(&self, mode: Self::Mode, y: &Self::State) -> Self::Mode;
     fn longest_first_step(&self, mode: Self::Mode, s: f64, y: &Self::State) -> f64;

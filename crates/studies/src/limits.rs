@@ -13,5 +13,5 @@ pub const MOST_LAWS: usize = 24;
 /// The stiffnesses of a study of stiff springs: from about 2 on all oscillations are alike, and at
 /// 10¹⁰ a collision has 100 000 switches.
 pub const STIFFNESSES: Range = Range { low: 3.0, high: 1e10 };
-/// The most impact ratios: as many lines can be told apart in a picture.
+/// The most impact ratios: more lines cannot be distinguished in a picture.
 pub const MOST_PSI: usize = 4;

@@ -17,9 +17,9 @@ pub const SCHEMA: &str = "stickslip.system-convergence/1";
 
 /// The tolerances, relative and absolute: 10 to the power of these.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -13..=-2;
-/// The tolerance of the reference, and that of the run which tells how good it is.
+/// The tolerance of the reference, and the tolerance of the run that measures its error.
 const REFERENCE: [f64; 2] = [1e-15, 1e-14];
-/// The methods with their lines, whose colours are those of Okabe and Ito.
+/// The methods with their lines, in colours of Okabe and Ito.
 const METHODS: [(EmbeddedPair, Stroke); 2] = [
     (EmbeddedPair::Dopri5, Stroke::full("#0072B2", 1.4)),
     (EmbeddedPair::Dop853, Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" }),
@@ -134,7 +134,7 @@ impl Row {
 struct Measurement<'a> {
     settings: &'a Settings,
     reference: Recording,
-    /// The run that tells how good the reference is.
+    /// The run that measures the error of the reference.
     doubt: Row,
     rows: Vec<Row>,
 }

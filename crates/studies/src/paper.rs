@@ -12,8 +12,7 @@ pub const MU: f64 = REDUCTION.mu;
 /// Tangential inertia α of all figures.
 pub const ALPHA: f64 = REDUCTION.alpha;
 
-/// The value on the axis of stiffness where the points a to o of Figure 4 stand, which is that of
-/// Figure 5.
+/// The value on the axis of stiffness of the points a to o of Figure 4, and of Figure 5.
 pub const STIFFNESS: f64 = 18.0;
 /// The number of switches there as g_t/g_n falls, counted in the panels of Figure 5.
 pub const SWITCHES: &str = "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2";

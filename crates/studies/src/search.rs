@@ -1,4 +1,4 @@
-//! Searches for maxima, zeros and changes; the solvers are those of argmin.
+//! Searches for maxima, zeros and changes, with the solvers of argmin.
 
 use std::cell::RefCell;
 use std::fmt;

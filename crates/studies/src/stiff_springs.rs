@@ -46,7 +46,7 @@ struct Measurement {
     restitutions: Vec<Vec<LargestRestitution>>,
     /// The ψ of `single`.
     single_psi: f64,
-    /// κ and |w_final| at one ψ, as far as single oscillations can be told apart.
+    /// κ and |w_final| at one ψ, as far as single oscillations are resolved.
     single: Vec<(f64, f64)>,
     profile: Profile,
     peak: Peak,

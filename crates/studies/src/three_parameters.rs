@@ -29,7 +29,7 @@ const STATE: usize = 4;
 /// x^{3/2}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreeParameters {
-    /// Whether the spring is reset to its limit while sliding; if not, it is that of
+    /// Whether the spring is reset to its limit while sliding; if not, it is the spring of
     /// [`unreset`](crate::unreset).
     pub reset: bool,
     /// The stiffness κ.

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! The spring may then grow without limit, and a force that should only brake the motion turns it
-//! round: at κ = 18 and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are those of
+//! round: at κ = 18 and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are the same as in
 //! [`stickslip_model::regularized`].
 
 use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress, SAME_SIDE};
@@ -36,7 +36,7 @@ const T: usize = 4;
 /// The normal energy taken by damping.
 const DAMPING: usize = 5;
 
-/// Guard of the motion's reversals, after those of [`stickslip_model::regularized`].
+/// Guard of the motion's reversals, after the guards of [`stickslip_model::regularized`].
 const TURN: usize = 3;
 
 /// A collision with a spring that is not reset.

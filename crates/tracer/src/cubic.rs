@@ -88,7 +88,7 @@ impl Cubic {
         Self { points: [d, c, b, a] }
     }
 
-    /// ½∫(x dy − y dx) along the curve, with coordinates relative to `origin`, exact but for
+    /// ½∫(x dy − y dx) along the curve, with coordinates relative to `origin`, exact up to
     /// rounding. Summed over a closed counterclockwise path, it is the area inside.
     #[must_use]
     pub fn area(&self, origin: &Point) -> f64 {

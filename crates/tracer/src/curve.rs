@@ -45,8 +45,8 @@ pub struct Vertex<Margin> {
 
 /// The kind of a vertex.
 ///
-/// A trace tells the first four kinds apart. For hybrid systems,
-/// [`Network::name_vertices`](crate::Network::name_vertices) tells all of them apart.
+/// A trace distinguishes the first four kinds. For hybrid systems,
+/// [`Network::name_vertices`](crate::Network::name_vertices) distinguishes all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -63,8 +63,8 @@ pub enum VertexKind {
     /// The minimum that vanishes reaches the end of the run. Beyond the vertex the value of the
     /// guard at the end vanishes instead.
     GrazeAtEnd,
-    /// Values at the end of the run vanish together: that of one phase, and those of phases that
-    /// begin where it ends.
+    /// Values at the end of the run vanish together: the value of one phase, and the values of
+    /// phases that begin where it ends.
     VanishingPhase,
 }
 

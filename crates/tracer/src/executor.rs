@@ -1,4 +1,7 @@
-//! Who computes the runs at many points: the caller, on as many threads as it likes.
+//! Executors compute the runs at many points, on as many threads as the caller wants.
+//!
+//! Only the runs of the grid and of a verification are computed this way. Following a curve is
+//! serial: each node depends on the one before, and each vertex on all curves before.
 
 use crate::family::{Family, FreeRun};
 use crate::window::Point;
@@ -10,7 +13,7 @@ pub type FreeRunOf<F> =
 /// The label of a family, or why its run failed.
 pub type LabelOf<F> = Result<<F as Family>::Label, <F as Family>::Error>;
 
-/// Computes the runs at many points, of which none depends on another.
+/// Computes the runs at many points. No run depends on another.
 ///
 /// Both functions return as many results as there are points, in their order. Where the runs are
 /// computed, and in which order, does not matter, so that an atlas is the same with any executor,

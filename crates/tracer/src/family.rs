@@ -38,8 +38,8 @@ pub trait Family {
 
     /// The name that `margin` has at `point`, which lies on its boundary.
     ///
-    /// A family that tells the minima of a guard apart by their places updates the place here. The
-    /// default returns `margin` unchanged.
+    /// A family whose margins name minima by their places updates the place here, since places move
+    /// along the boundary. The default returns `margin` unchanged.
     ///
     /// # Errors
     /// The run failed.
@@ -47,28 +47,28 @@ pub trait Family {
         Ok(margin.clone())
     }
 
-    /// Whether the label changes wherever this margin passes through zero, if the itinerary that
-    /// leads to it is that of the free run.
+    /// Whether the label changes wherever this margin passes through zero, if the free run has the
+    /// itinerary that leads to it.
     ///
-    /// A margin that may as well vanish without consequences is only looked at where the label has
-    /// been seen to change. The default is that the label changes.
+    /// Return `false` for a margin whose zero may leave the label unchanged. The tracer then
+    /// follows it only where it has seen the label change. The default is that the label changes.
     fn is_sure(&self, _margin: &Self::Margin) -> bool {
         true
     }
 
     /// Pairs of margins that vanish together where the extremum of `margin` may merge with another
-    /// one on its zero: at a cusp, where its boundary ends with that of the other extremum.
+    /// one on its zero: at a cusp, where its boundary ends with the boundary of the other extremum.
     ///
-    /// Near such a place neither of the two extrema tells where it is to more than a part of its
-    /// digits. The margins returned here must be smooth around it, and their boundaries must cross
-    /// there. They need not be margins of any free run. The default is that none are known.
+    /// Near a cusp neither of the two extrema determines its place to all digits. The margins
+    /// returned here must be smooth around it, and their boundaries must cross there. They need not
+    /// be margins of any free run. The default is that none are known.
     fn cusps(&self, _margin: &Self::Margin) -> Vec<[Self::Margin; 2]> {
         Vec::new()
     }
 
-    /// Three margins that vanish together where three extrema merge on their zero, that of `margin`
-    /// among them: at a swallowtail, which a plane has at single values of a third parameter. They
-    /// are only asked for by a [`Stack`](crate::Stack). The default is that none are known.
+    /// Three margins that vanish together where three extrema merge on their zero, the extremum of
+    /// `margin` among them: at a swallowtail, which a plane has at single values of a third
+    /// parameter. Only a [`Stack`](crate::Stack) uses them. The default is that none are known.
     fn swallowtail(&self, _margin: &Self::Margin) -> Option<[Self::Margin; 3]> {
         None
     }

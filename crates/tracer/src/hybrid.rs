@@ -41,7 +41,7 @@ pub trait DynamicProblem {
     /// The hybrid system.
     type System: DynamicSystem;
 
-    /// The run at `point`; `None` where there is none, so that it counts as one that fails.
+    /// The run at `point`; `None` if there is no run, which counts as a failed one.
     fn at(&self, point: &Point) -> Option<DynamicSetting<Self::System>>;
 }
 
@@ -97,14 +97,14 @@ impl Itinerary {
 
 /// The runs of a problem.
 ///
-/// The label of a run is its [`Itinerary`]. Margins are those of the solver,
-/// [`stickslip_solver::Margin`]; they are complete if the start of the run and every transition
-/// without a [condition](HybridSystem::transition_condition) are smooth.
+/// The label of a run is its [`Itinerary`]. Margins are the solver's, [`stickslip_solver::Margin`];
+/// they are complete if the start of the run and every transition without a
+/// [condition](HybridSystem::transition_condition) are smooth.
 ///
 /// A run that accumulates switches or fails has no margins. Where such runs begin, the trace
 /// reports changes of the label as unresolved, with the labels on both sides; [`Self::outcome`]
-/// tells why. Near an accumulation there are boundaries without end: set
-/// [`Options::max_switches`], and itineraries are told apart only up to so many switches.
+/// gives the reason. Near an accumulation there are boundaries without end: set
+/// [`Options::max_switches`], and itineraries differ only if they differ within that many switches.
 #[derive(Clone, Copy, Debug)]
 pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     /// The system and the start of its run, at every point.
@@ -160,7 +160,7 @@ where
     }
 }
 
-/// The runs of a problem whose dimension is known at run time. It is as a [`HybridFamily`].
+/// The runs of a problem whose dimension is known at run time, otherwise like a [`HybridFamily`].
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicFamily<P, M> {
     /// The system, and the start and the end of its run, at every point.
@@ -303,7 +303,7 @@ fn free_run(
     Ok(FreeRun { label, margins: margins.collect() })
 }
 
-/// The result of a run, `None` if it failed. What is wrong with all runs is an error.
+/// The result of a run, `None` if it failed. What is wrong in every run is an error.
 fn value_of<T>(point: &Point, result: Result<T, RunError>) -> Result<Option<T>, FamilyError> {
     match result {
         Ok(value) => Ok(Some(value)),

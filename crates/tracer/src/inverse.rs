@@ -1,7 +1,7 @@
 //! Inverses of small matrices, compiled with this crate.
 //!
-//! The inverse of nalgebra has code for every size. In what is generic, each program with a family
-//! of its own would compile all of it again.
+//! The inverse of nalgebra has code for every size. Called from generic code, all of it would be
+//! compiled again in each program that defines a family.
 
 use nalgebra::{Matrix2, Matrix3};
 

@@ -23,9 +23,9 @@ pub struct TraceOptions {
     /// The largest angle between the tangents of consecutive nodes, in radians, up to 0.5.
     pub max_angle: f64,
     /// How far beyond the window boundaries are followed, as a fraction of its shorter extent, from
-    /// 0 to 1e-2. They are cut at the window's edges. With 0, what meets or touches a hair beyond
-    /// an edge is not found, and boundaries beside it cannot be told apart; 1e-3 is as far as the
-    /// search around vertices reaches. The family must be defined there.
+    /// 0 to 1e-2. They are cut at the window's edges. With 0, vertices just beyond an edge are not
+    /// found, and neither labels nor margins distinguish the boundaries beside them at the edge;
+    /// 1e-3 is as far as the search around vertices reaches. The family must be defined there.
     #[cfg_attr(feature = "serde", serde(default))]
     pub beyond: f64,
     /// The number of cells of the grid along each axis, from 2 to 4096. The runs of all cells are
@@ -35,7 +35,7 @@ pub struct TraceOptions {
     pub max_nodes: usize,
     /// The greatest number of curves, at least 1. A window that shows more of them before it is
     /// traced is refused. Since that count misses some, up to twice as many are traced; further
-    /// ones are reported as unresolved.
+    /// curves are reported as unresolved.
     pub max_curves: usize,
 }
 

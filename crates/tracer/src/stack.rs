@@ -1,5 +1,11 @@
 //! Atlases of a family with a third parameter, and where their structure changes.
 //!
+//! Atlases are made at the given values, and neighbours are compared as graphs of labelled regions.
+//! Where two neighbours differ, candidates are stretches of the arrangement around these regions
+//! whose ends may meet: three conditions, which Newton's method solves for the place and the value.
+//! A solution counts if atlases on both sides of it agree with runs and differ. Otherwise the
+//! interval is bisected. Then both rests are searched in the same way.
+//!
 //! In reading order:
 //!
 //! - `structure`: atlases compared as planar graphs with labels
@@ -42,7 +48,7 @@ pub struct StackOptions {
     /// narrower ones have atlases that are in doubt, up to 100 widths, or in which a region is too
     /// small to be seen, up to 450 widths.
     pub width: f64,
-    /// The greatest number of atlases. Changes between the last ones are brackets in doubt.
+    /// The greatest number of atlases. Changes for which no atlases are left are brackets in doubt.
     pub atlases: usize,
 }
 
@@ -55,13 +61,13 @@ impl Default for StackOptions {
 /// Atlases of a family at several values of a third parameter, and the changes of their structure
 /// between these values.
 ///
-/// Atlases have the same structure if their regions are planar graphs that cannot be told apart by
+/// Atlases have the same structure if their regions form planar graphs that do not differ in
 /// labels. Where neighbours differ, atlases between them isolate each change. What changes is the
 /// way in which codimension-2 points are connected, so two of them meet, or one meets the edge of
 /// the window, or a boundary touches another one or the edge, or shrinks to a point. Three
 /// conditions hold there, which Newton's method solves for the place and the value. A solution
-/// counts only if the atlases on both sides of it differ in structure. Changes that undo each
-/// other between two values at which there is an atlas are not seen.
+/// counts only if the atlases on both sides of it differ in structure. Changes that undo each other
+/// between two values at which there is an atlas are not seen.
 ///
 /// ```
 /// use std::convert::Infallible;
@@ -95,17 +101,17 @@ impl Default for StackOptions {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Stack<Label, Margin> {
-    /// The atlases at the values asked for; at the first ones of them, if the search was cancelled.
+    /// The atlases at the given values; only the first atlases, if the search was cancelled.
     pub layers: Vec<Layer<Label, Margin>>,
     /// The changes of the structure, in the order of the third parameter.
     pub changes: Vec<Change<Label>>,
     /// The number of atlases that were traced.
     pub atlases: usize,
-    /// Whether the search came to its end. If it was cancelled, what was not isolated by then is a
-    /// bracket in doubt.
+    /// Whether the search came to its end. If it was cancelled, changes that were not isolated by
+    /// then are brackets in doubt.
     pub finished: bool,
-    /// The structures of the first and the last layer that is not in doubt, and those behind each
-    /// change.
+    /// The structures of the first and the last layer that is not in doubt, and the structure
+    /// behind each change.
     structures: Vec<(f64, Structure<Label>)>,
 }
 
@@ -142,12 +148,12 @@ pub enum StackError<E: std::error::Error + 'static> {
 
 impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
     /// The stack of the family that `family` gives at each value of the third parameter, with
-    /// atlases at `values`, which ascend. The family is only asked for between the first and the
-    /// last value.
+    /// atlases at `values`, which ascend. `family` is only called between the first and the last
+    /// value.
     ///
     /// # Errors
     /// The values or the options are not possible, or an atlas fails. An atlas that is in doubt is
-    /// no error: changes are then searched between its neighbours.
+    /// not an error: changes are then searched between its neighbours.
     pub fn of<F>(
         family: impl Fn(f64) -> F,
         window: &Window,

@@ -1,5 +1,23 @@
 //! How boundaries are found and followed.
 //!
+//! 1. `trace` scans segments: the window's edges, the edges of a grid, polygons around vertices.
+//!    The known curves explain how the label changes along a segment. Where they do not, `seed`
+//!    bisects the change and asks the margins of the free runs on both sides which one vanishes
+//!    there. `sliver` follows margins from one place to the next, also where both places have the
+//!    same label. `island` searches for minima of margins that dip below zero between the places of
+//!    the grid.
+//! 2. A `branch` follows a margin both ways, step by step. Free runs on both sides of each node
+//!    must have the labels of the branch: the zero set of a margin goes on beyond the place where
+//!    its itinerary is the one that happens.
+//! 3. Where a step fails, the branch searches for a vertex: two margins vanish together, the
+//!    gradient vanishes, or the margin ceases to exist. Grazes, cusps and other vertices are
+//!    located in `branch/special`, `branch/cusp`, `branch/touch` and `branch/tangency`.
+//! 4. `builder` merges vertices, and divides curves that pass through a new one. A new vertex is
+//!    examined on circles around it: the labels there show how many boundaries meet, and which; the
+//!    margins show where.
+//! 5. `cut` takes the part inside the window, `naming` names the vertices, and `extrema` finds
+//!    where curves turn back in a coordinate.
+//!
 //! In reading order:
 //!
 //! - `trace`: all boundaries in a window

@@ -35,11 +35,11 @@ impl Watch<'static> {
 }
 
 impl<'a> Watch<'a> {
-    /// The number of points between two questions whether to go on.
+    /// The number of points between two calls of `cancelled`.
     const PORTION: usize = 256;
 
     /// The same watch, which cancels when `cancelled` returns `true`; from then on it should always
-    /// do so. It is asked between tasks, which are short: one search along an edge of the grid,
+    /// do so. It is called between tasks, which are short: one search along an edge of the grid,
     /// around a vertex, or some hundred runs.
     #[must_use]
     pub fn cancelled_by(self, cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {

@@ -1,4 +1,7 @@
 //! The equations of the contact, for plain numbers and for numbers that carry a derivative.
+//!
+//! Runs integrate the equations with plain numbers; sensitivities use the same lines with dual
+//! numbers. There is no second law that could disagree.
 
 use num_dual::Dual64;
 use stickslip_solver::Number;

@@ -3,14 +3,14 @@
 //! A slip phase grazes stick where g = 0 at the first [turn](Trajectory::turns), and a stick phase
 //! that has just begun grazes slip soon after. The two turns meet, as κ is increased, at the
 //! [split](Trajectory::split), and both boundaries end where that happens and g = 0 there. With
-//! δ = 1 − κ/κ_c, the one is at a distance δ^{3/2} beside the other, so that neither margin tells
-//! the place well, nor exists beyond it. But it is a simple zero of two numbers that are smooth on
-//! all sides: P and g at the split.
+//! δ = 1 − κ/κ_c, the one is at a distance δ^{3/2} beside the other. Neither margin exists beyond
+//! the place, and each locates it to 1e-7 of a window or worse. But the place is a simple zero of
+//! two numbers that are smooth on all sides: P and g at the split.
 //!
 //! On a half swing with two tops of R, the top before the turns merges with the bottom between them
 //! where W = 0 at the first turn. If the gap D is 0 there too, the boundary of this top ends in a
-//! cusp, with that of the slip phase that begins at the top. D and W at the first turn are smooth
-//! there.
+//! cusp, with the boundary of the slip phase that begins at the top. D and W at the first turn are
+//! smooth there.
 //!
 //! Where P, D and W are 0 at the split, both tops merge with the bottom. That is a swallowtail: in
 //! a plane of κ and ψ it happens at single dampings.
@@ -104,7 +104,7 @@ enum Graze {
 
 fn graze(contact: &Contact, which: &Margin) -> Option<Graze> {
     let Place::Minimum { number, .. } = which.place else { return None };
-    // Without damping, the phases with an even number are those of slip.
+    // Without damping, phases with an even number are slip.
     let sticks = which.exits.len().is_multiple_of(2) != (contact.damping() == 0.0);
     if !sticks {
         return (number == TURN).then_some(Graze::Slip);

@@ -92,7 +92,7 @@ fn as_velocity<T: Trajectory>(swing: &Swing<T>, at: &At<T::Motion>, gap: f64, al
 }
 
 /// The half swings from the `first` to the `last` one on which the spring may come nearest to its
-/// limit. The limit rises and then falls: they are among the first and the last ones.
+/// limit. The limit rises and then falls, so they are among the first and the last half swings.
 fn half_swings(first: u32, last: u32) -> impl Iterator<Item = u32> + Clone {
     const ENDS: u32 = 3;
     let early = first + ENDS;

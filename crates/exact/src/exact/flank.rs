@@ -50,7 +50,7 @@ enum Side {
     Before,
     /// After the second turn, as W is positive at the first one.
     After,
-    /// No turn that would tell is on the half swing, which ends at this moment.
+    /// No turn that would decide is on the half swing, which ends at this moment.
     Either(Moment),
 }
 
@@ -156,14 +156,14 @@ impl Flanks {
         self.again.is_some()
     }
 
-    /// Whether the only top of R can be called that before the turns, and that after them. Where
-    /// nothing tells, it can be called either.
+    /// Whether the only top of R can be named as the top before the turns, and as the top after
+    /// them. Where nothing decides, both names apply.
     pub fn called(&self) -> [bool; 2] {
         [self.side != Side::After, self.side != Side::Before]
     }
 
-    /// Whether the only top of R is called that after the turns. Where nothing else tells, it is if
-    /// it is after the place where the turns meet.
+    /// Whether the only top of R is named as the top after the turns. Where nothing else decides,
+    /// the place where the turns meet divides the two.
     pub fn is_after<T: Trajectory>(&self, swing: &Swing<T>) -> bool {
         let split = swing.path.split();
         match (self.side, &self.low) {

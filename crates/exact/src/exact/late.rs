@@ -1,4 +1,9 @@
 //! Margins of the last half swing, where its top is close to the end of contact or beyond it.
+//!
+//! With damping, L falls to 0 at an even rate at the end of contact. A ratio |y|/L whose maximum is
+//! there is not a smooth function of κ and ψ. The gap is, and has one minimum, which may lie beyond
+//! the end. With little damping L falls faster than the spring over many half swings. These have no
+//! minimum of the gap; only the last half swing, on which the gap rises again, has this margin.
 
 use std::f64::consts::PI;
 
@@ -71,7 +76,7 @@ impl LateHalfSwing {
 ///
 /// Near the end, a time τ before it, L = τ^{3/2}/κ and q = |w| (τ − τ₀). The top is at τ = 3τ₀, and
 /// 1/R² = (27/4) τ₀/(κw)² there. This is smooth through τ₀ = 0, where y vanishes at the end. With a
-/// small ψ its zero is closer to that place than boundaries can be told apart.
+/// small ψ its zero is closer to that place than boundaries can be resolved.
 pub fn beyond_end<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
     let sign = half_swing_sign(k);
     let (y, w) = at_end(swing);

@@ -7,11 +7,16 @@
 //! - A slip phase passes the first turn of P = κL + L̈ if g = s·w − dL/dt > 0 there.
 //! - A slip phase lasts to the end of contact if g > 0 at the end.
 //! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at both of
-//!   its tops if it has two. Tops are told apart by the side of the turns on which they are. Near
-//!   the end of contact this number is linear in the time at which y vanishes; the gap L − |y| is
-//!   not. With damping it is the other way round.
+//!   its tops if it has two. The gap L − |y| vanishes with this number. But the ratio has one
+//!   maximum on each half swing, between known places, while the number of minima of the gap is not
+//!   known. Near the end of contact the number is linear in the time at which y vanishes; the gap
+//!   is not. With damping it is the other way round, and the gap is used (`late`).
 //! - With damping, a last stick phase ends on the side on which it does if |y| > 0 at the end of
 //!   contact.
+//!
+//! The name of a top says on which side of the turns it lies. Called first and second, an only top
+//! would change its name where another one appears beside it. Where no turn decides, the top has
+//! both names.
 //!
 //! Each margin is smooth through 0 as long as the switches before it are prescribed. A switch that
 //! ends slip is prescribed as before or after the turns, a switch that ends stick by the number of
@@ -157,9 +162,8 @@ pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactErr
 }
 
 /// The margin `which` with hints that fit the collision of `contact`, as
-/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged,
-/// except that of a top which is the only one of its half swing: it gets the name that
-/// [`margins`] would give it.
+/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged.
+/// Only the margin of a half swing's single top gets the name that [`margins`] would give it.
 ///
 /// # Errors
 /// As [`margin`].
@@ -226,7 +230,7 @@ const AT_TURN: Place = Place::Minimum { near: Hint(0.0), number: TURN };
 /// The margins of the tops of R on one half swing, before the turns and after them.
 #[derive(Clone, Copy, Debug)]
 struct Tops {
-    /// Both margins. The only top of a half swing without a turn that would tell has both names.
+    /// Both margins. The only top of a half swing has both names if no turn decides.
     values: [Option<f64>; 2],
     /// Which name the only top is listed with.
     only: Option<usize>,

@@ -36,7 +36,7 @@ impl Half {
 /// t_c are still distinguished.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// The half of the contact, which tells the nearer end.
+    /// The half of the contact, which gives the nearer end.
     pub half: Half,
     /// The root coordinate r, 0 at the end of contact that the half belongs to. Near both ends the
     /// motion is smooth in it, not in time.

@@ -3,8 +3,9 @@
 //!
 //! A [`Trajectory`] is the compression as a function of time, and what follows from it for the
 //! spring's limit L = F/κ. [`undamped`] is the closed form without damping, [`viscoelastic`] the
-//! expansion with it. A further law with a tangential spring of constant stiffness is a further
-//! trajectory.
+//! expansion with it. The decisions need little of the normal motion: that L has one maximum, and
+//! where P = κL + L̈ changes its sign. They are compiled once for each trajectory, without dynamic
+//! dispatch. A further law with a tangential spring of constant stiffness is a further trajectory.
 
 pub mod roots;
 pub mod undamped;
@@ -58,8 +59,8 @@ pub trait Trajectory: Debug + Sized {
     /// The root coordinates, from the start and from the end of contact, of the moment at which the
     /// halves meet.
     fn middle(&self) -> [f64; 2];
-    /// The unit of time in scaled time; the unit of κ is its inverse square, that of lengths
-    /// itself.
+    /// The unit of time in scaled time; the unit of κ is its inverse square, and the unit of
+    /// lengths is itself.
     fn time_unit(&self) -> f64 {
         1.0
     }

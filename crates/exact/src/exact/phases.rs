@@ -35,7 +35,7 @@ pub trait Task {
     /// The answer.
     type Output;
 
-    /// Answers the question for `contact`, whose slip phases are those of `slide`.
+    /// Answers the question for `contact`, whose slip phases `slide` describes.
     fn run<T: Trajectory>(self, slide: &Slide<T>, contact: &Contact) -> Self::Output;
 }
 

@@ -105,7 +105,8 @@ fn release_without_turns<T: Trajectory>(swing: &Swing<T>) -> (Moment, u32) {
 /// More than one by more than rounding.
 const MORE: f64 = 1.0 + 1e-12;
 
-/// The error, as an angle, of a peak: its signs only have to tell the two parts of a half swing.
+/// The error, as an angle, of a peak: its signs only have to distinguish the two parts of a half
+/// swing.
 const ROUGH: f64 = 0.1;
 
 /// The time during which L > A ≥ |y|: the spring cannot reach its limit, whatever the number of

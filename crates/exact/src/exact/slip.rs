@@ -9,7 +9,7 @@ use super::moment::{At, Half, Moment, Motion, Spring};
 pub struct SlipPhase {
     /// The moment at which it starts.
     pub start: Moment,
-    /// |v − v₀| at the start, v₀ being that of the nearer end of contact.
+    /// |v − v₀| at the start, where v₀ is the velocity at the nearer end of contact.
     pub deficit: f64,
     /// s·w at the start.
     pub velocity: f64,

@@ -11,7 +11,7 @@ use super::oscillator::Oscillator;
 /// F = e^{−pt} S(z)     dF/dt = −e^{−pt} (p S(z) + cos νz)     v = e^{−pt} S(z − τ)
 /// ```
 ///
-/// where τ, half of the time of that zero, is that of greatest compression. For a ≥ 2 sines are
+/// where τ, half of the time of that zero, is the time of greatest compression. For a ≥ 2 sines are
 /// hyperbolic.
 #[derive(Clone, Copy, Debug)]
 pub struct Normal {

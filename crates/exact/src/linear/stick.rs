@@ -42,7 +42,7 @@ pub struct Stick<'a> {
     pub side: Side,
     /// w at the start.
     pub velocity: f64,
-    /// Q at the start, but 0 in a relaxed phase, whose Q is that of the dashpot.
+    /// Q at the start, but 0 in a relaxed phase, in which the dashpot determines Q.
     force: f64,
     /// Whether the spring has no elongation at the start.
     relaxed: bool,

@@ -76,8 +76,7 @@ impl Svg {
     #[must_use]
     pub fn document(&self) -> String {
         let Self { width, height, title, body } = self;
-        // Some viewers drop blanks at the ends of lowered and raised words unless told to preserve
-        // them.
+        // Some viewers drop blanks at the ends of lowered and raised words without this attribute.
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{FONT}" xml:space="preserve">
 <title>{title}</title>

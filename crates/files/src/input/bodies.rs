@@ -1,6 +1,10 @@
 //! JSON files of two bodies and their surfaces, with or without their motions. The layout is that
 //! of docs/impact.schema.json.
 //!
+//! Files are read into options first. A missing field is then an error of this crate, with its
+//! path, unit and range; serde only sees the layout. A test feeds the schema with every file that
+//! is refused here.
+//!
 //! Start reading here; then, in this order: `file` (what the fields mean), `field` (numbers and
 //! vectors in them), `velocities` (instead of motions) and `impacts` (rows that change the file).
 

@@ -2,7 +2,9 @@
 //!
 //! The header is a line for readers, a line of JSON and a checksum. As the tiles, each with its own
 //! checksum, it says what the whole task is. Nothing in the file is compressed, and a tile is found
-//! without reading others.
+//! without reading others. So a part is what a whole map keeps until it is complete, and to join
+//! parts is what a whole map does in the end. The header holds the task as data too: `join` needs
+//! no options.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};

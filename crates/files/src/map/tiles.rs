@@ -1,4 +1,8 @@
 //! The directory in which the finished tiles of a map are stored until the map is complete.
+//!
+//! A tile holds successive points, not a square: the finished file is a concatenation of tiles. It
+//! is written in one pass for each array with one tile in memory, and the files on disk are checked
+//! tile by tile. Each tile names the task word for word, so that no two tasks are confused.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;

@@ -2,7 +2,8 @@
 //!
 //! The arrays have the format .npy 1.0 as in numpy/lib/format.py. They are stored without
 //! compression in a ZIP archive. Its entries have no time, so that the same arrays are always the
-//! same bytes.
+//! same bytes. The header of an array is one line of text. The crates that write it bring a parser
+//! generator and a C compiler, or want the array in memory.
 
 use std::io::{self, BufWriter, Write};
 

@@ -1,4 +1,7 @@
 //! The course of a collision in time, at every moment and not at its switches alone.
+//!
+//! A collision has no list of samples. The integrator's dense output is kept instead, so that a
+//! picture can ask for as many moments of a phase as it needs.
 
 mod followed;
 mod record;
@@ -33,7 +36,7 @@ pub struct Snapshot {
 
 /// The course of one collision, from [`Collider::history`](crate::Collider::history).
 ///
-/// States are those of the integrator's dense output. At the default tolerances of Dormand–Prince
+/// States come from the integrator's dense output. At the default tolerances of Dormand–Prince
 /// 8(5,3) they differ from the closed form by at most 1e-11 in x, 4e-12 in v and w, and
 /// 4e-12/min(κ, √κ) in y. This was measured at 1500 times of each of 20 undamped collisions with κ
 /// from 0.02 to 1e4 and ψ from 0.01 to 3. Switches are where the integrator finds them: unlike
@@ -79,7 +82,7 @@ pub struct PhaseHistory<'a> {
 pub struct Moment {
     /// The state.
     pub snapshot: Snapshot,
-    /// The law that holds; at a switch, that of the phase that begins.
+    /// The law that holds; at a switch, the law of the phase that begins.
     pub regime: Regime,
     /// The side of sliding, as [`PhaseHistory::side`].
     pub side: Side,
@@ -200,7 +203,7 @@ impl PhaseHistory<'_> {
     /// is 0, or if the phase is too short for a step. Where the force ends before the overlap,
     /// there is one more at the end of the force.
     ///
-    /// They are evenly spaced in s, with dt = 2√x ds or that of the law's own smooth coordinates.
+    /// They are evenly spaced in s, where dt = 2√x ds, or in the smooth coordinate of another law.
     /// In time they are closer to each other near the ends of contact.
     pub fn samples(&self, intervals: usize) -> impl Iterator<Item = Snapshot> + use<> {
         self.course.samples(self.index, intervals).into_iter()

@@ -33,8 +33,7 @@ const LONGEST_STEP: f64 = 0.1;
 /// estimates miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
 const SMALL: f64 = 0.01;
 
-/// Stiffness κ above which the tolerances are finer than asked for: their errors add up over √κ
-/// oscillations.
+/// Stiffness κ above which the tolerances are finer than given: errors add up over √κ oscillations.
 const STIFF: f64 = 3e3;
 /// Stiffness κ above which they are still finer, since the errors of so many steps have one sign.
 /// Far above it steps would be too many.
@@ -113,7 +112,7 @@ impl Collider {
     /// The default collider without the second run that gives collisions near a graze twice the
     /// digits: the switches are the same, their times and states are as the integrator finds them.
     ///
-    /// For those who only ask which switches a collision has. Where most collisions are near a
+    /// For callers who only need the switches of a collision. Where most collisions are near a
     /// graze, as for small ψ without damping, it takes a fraction of the time.
     ///
     /// ```
@@ -190,8 +189,8 @@ impl Collider {
 
     /// Integrates one collision and keeps its course in time, both with one run.
     ///
-    /// The collision is bit for bit that of [`Self::collide`], and the course that of
-    /// [`Self::history`], with its limit of steps. The statistics are those of this run, which
+    /// The collision equals the result of [`Self::collide`], bit for bit, and the course the result
+    /// of [`Self::history`], with its limit of steps. The statistics belong to this run, which
     /// repeats the step to every switch so that the course ends exactly there.
     ///
     /// # Errors
@@ -323,7 +322,7 @@ impl Collider {
             options.max_step *= small;
             options.first_step = options.first_step.map(|h| h * small);
             for tolerance in [&mut options.rtol, &mut options.atol] {
-                // What is finer than rounding stays as it is.
+                // A tolerance that is finer than rounding stays unchanged.
                 *tolerance = (*tolerance * stiff).max(FINEST).min(*tolerance);
             }
             // Where rounding keeps a contact from ending, the general limit would take hours.

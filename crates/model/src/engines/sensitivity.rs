@@ -51,10 +51,10 @@ pub struct Sensitivity {
 impl Collider {
     /// Integrates one collision with the derivatives of its results with respect to κ, ψ and a.
     ///
-    /// The derivatives are those of the collision with unchanged switches. Relative to their
-    /// largest value during the collision they are about as accurate as the results. At a
-    /// relative distance d from a graze, the derivatives of the switch beside it grow as 1/√d,
-    /// and their relative error grows by the same factor.
+    /// The derivatives hold for unchanged switches. Relative to their largest value during the
+    /// collision they are about as accurate as the results. At a relative distance d from a graze,
+    /// the derivatives of the switch beside it grow as 1/√d, and their relative error grows by the
+    /// same factor.
     ///
     /// ```
     /// use stickslip_model::{Collider, Contact};

@@ -85,7 +85,8 @@ pub struct Encounter {
     /// Tangential velocity g_t of the surfaces in m/s, 0 in a central impact.
     pub tangential_m_per_s: f64,
     /// The impact, reduced to the numbers on which the contact depends. A central impact has no ψ;
-    /// the ψ here is then that of another impact with the same normal motion.
+    /// the ψ here then belongs to another impact with the same normal motion. That is exact, since
+    /// the normal motion does not depend on the tangential one.
     pub impact: Impact,
     pub(crate) partners: [Partner; 2],
 }

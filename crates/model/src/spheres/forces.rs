@@ -22,12 +22,13 @@ pub struct Constants {
     pub friction: f64,
     /// Stiffness k of a linear normal force in kg/s².
     pub normal_stiffness_kg_per_s2: Option<f64>,
-    /// Elastic constant ρ of Hertz' force in kg/(s² √m); without it, that of the materials.
+    /// Elastic constant ρ of Hertz' force in kg/(s² √m); `None` takes the constant of the
+    /// materials.
     pub hertz_stiffness_kg_per_s2_m0_5: Option<f64>,
     /// Constant tangential stiffness k_t in kg/s².
     pub tangential_stiffness_kg_per_s2: Option<f64>,
-    /// Constant K of Mindlin's tangential stiffness K √ξ, in kg/(s² √m); without it 8 G* √R, that
-    /// of the materials.
+    /// Constant K of Mindlin's tangential stiffness K √ξ, in kg/(s² √m); `None` takes 8 G* √R of
+    /// the materials.
     pub mindlin_stiffness_kg_per_s2_m0_5: Option<f64>,
     /// Damping γ of the normal force in kg/(s mᵉ).
     pub damping_coefficient: Option<f64>,
@@ -168,7 +169,7 @@ impl Forces {
     }
 }
 
-/// The paper's law, whose elastic constant is that of the materials. [`BodyPair::new`] checks it.
+/// The paper's law, with the elastic constant of the materials. [`BodyPair::new`] checks it.
 ///
 /// [`BodyPair::new`]: super::scaling::BodyPair::new
 impl From<&Surface> for Forces {

@@ -29,7 +29,7 @@ pub struct Observed {
     pub patch_rebound_angle_rad: f64,
     /// Tangential velocity of the centre after over that before the contact, e_t of Kharaz, Gorham
     /// and Salman (Powder Technol. 120, 281, 2001), along the velocity before; `None` if there is
-    /// none before.
+    /// no velocity before.
     pub centre_e_t: Option<f64>,
     /// Angle of the motion of the centre at impact.
     pub centre_impact_angle_rad: f64,

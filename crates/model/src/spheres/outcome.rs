@@ -55,8 +55,7 @@ pub struct ForceSwitch {
 
 /// The energy account of a collision in J: where its energy went.
 ///
-/// Kinetic energies are those of the spheres, rotation included, in the frame in which the motions
-/// are given.
+/// Kinetic energies of the spheres include rotation, in the frame in which the motions are given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyAccount {
     /// Kinetic energy at impact.

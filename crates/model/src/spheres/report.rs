@@ -40,7 +40,7 @@ pub struct ImpactReport {
     /// The two bodies.
     pub encounter: Encounter,
     /// The collision of [`Encounter::contact`]. In a central impact only its normal motion counts:
-    /// [`Self::psi`], [`Self::reversals`] and [`Self::itinerary`] are those of the impact.
+    /// [`Self::psi`], [`Self::reversals`] and [`Self::itinerary`] describe the impact itself.
     pub collision: Collision,
     /// The bodies after the contact.
     pub outcome: Outcome,

@@ -55,7 +55,7 @@ impl BodyPair {
     /// The pair of a sphere and the body that it hits.
     ///
     /// As in Hertz' contact, 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A wall has infinite radius,
-    /// mass and moment of inertia: R and m are those of the sphere, and α = 1/(1 + m R²/J).
+    /// mass and moment of inertia: R and m belong to the sphere, and α = 1/(1 + m R²/J).
     ///
     /// The paper's law has a [`Surface`], other laws have [`Forces`].
     ///
@@ -244,7 +244,7 @@ impl Impact {
 
     /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
     /// [`Self::largest_compression_m`], where it is largest. Its κ is [`BodyPair::mindlin_kappa`].
-    /// Both are those of Hertz' normal force.
+    /// Both belong to Hertz' normal force.
     #[must_use]
     pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
         let BodyPair { elastic_constant, stiffness_ratio, .. } = self.pair;

@@ -15,12 +15,12 @@ const FORWARD: usize = BEYOND_GUARDS;
 /// What stands for a guard in the margin 1 + ε_t, and in the label where ε_t is below −1.
 const BACKWARD: usize = BEYOND_GUARDS + 1;
 
-/// Collisions with any law, with labels that tell whether |ε_t| is above 1.
+/// Collisions with any law, with labels that say whether |ε_t| is above 1.
 #[derive(Clone, Copy, Debug)]
 pub struct GainingFamily(GeneralFamily);
 
 impl GainingFamily {
-    /// The collisions of a plane, integrated as those of any law.
+    /// The collisions of a plane, integrated as for any law.
     pub(super) fn new(plane: CollisionPlane) -> Self {
         Self(plane.general())
     }
@@ -90,7 +90,7 @@ impl Family for GainingFamily {
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
         let FreeRun { label, mut margins } = self.0.free_run(point);
-        // Those of the last phase have all exits.
+        // Margins of the last phase have all exits.
         let is_whole = |exits: &Vec<Exit>| {
             exits.iter().filter(|exit| exit.guard != CREST).count() == label.len()
         };

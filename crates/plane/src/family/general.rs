@@ -4,6 +4,11 @@
 //! where the normal force begins to attract. The first exit in the name of a margin is not an exit
 //! of a guard but the beginning of the contact, so that a margin is followed beyond the contacts
 //! that begin so.
+//!
+//! A run stops soon behind the end of contact. Where the normal force begins to attract, a
+//! prescribed itinerary may wait for something that does not come, and the equations without their
+//! end would take as many steps as a run may. The normal motion does not depend on the tangential
+//! one and is the same at all points of a plane, so its end is known beforehand.
 
 use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, STATE};
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
@@ -20,7 +25,7 @@ use super::CollisionPlane;
 const SLIPS_ON: usize = GUARDS;
 /// What is added to the place of a beginning in its list.
 const BEGINS: usize = GUARDS + 1;
-/// The next two numbers tell whether |ε_t| is above 1, in a family that asks for it.
+/// The next two numbers say whether |ε_t| is above 1, in a family with such labels.
 pub(super) const BEYOND_GUARDS: usize = BEGINS + BEGINNINGS.len();
 
 /// The only number in the label of a collision that cannot be computed.
@@ -198,9 +203,8 @@ fn started(system: GeneralContact) -> System {
     (system, Start { mode: system.first(), s: 0.0, state: system.start() })
 }
 
-/// The label of a free run, as far as its margins tell it: whether slip goes on where attraction
-/// begins is told by the sign of a margin. They do not tell a last slip that is shorter than
-/// rounding.
+/// The label of a free run from its margins. The sign of a margin says whether slip goes on where
+/// attraction begins. A last slip that is shorter than rounding does not show in the margins.
 fn known_label(found: &Margins, system: &GeneralContact) -> Option<Vec<usize>> {
     if found.outcome != (Outcome::EndedByGuard { guard: END }) {
         return None;

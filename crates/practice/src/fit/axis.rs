@@ -30,7 +30,7 @@ pub struct Axis {
 
 impl Axis {
     /// The axis of a number in a range. `phase` is the largest phase of the spring in a contact
-    /// over √κ, where κ is that of normal incidence.
+    /// over √κ, where κ belongs to normal incidence.
     pub fn new(free: Free, range: Range, phase: f64) -> Self {
         let Range { low, high } = range;
         let places = match free {
@@ -48,7 +48,7 @@ impl Axis {
 
     /// The value at a coordinate.
     pub fn value(&self, at: f64) -> f64 {
-        // The ends are those of the range, without rounding.
+        // The ends equal the ends of the range, without rounding.
         let ends = self.ends();
         if at == ends.0 || at == ends.1 {
             return if at == ends.0 { self.range.low } else { self.range.high };

@@ -4,7 +4,7 @@ use stickslip_model::{
     BodyPair, InvalidParameter, Law, Normal, Sphere, Surface, Tangential, quantity,
 };
 
-/// Two bodies whose surfaces are fitted, of which the second one is at rest.
+/// Two bodies whose surfaces are fitted; the second one is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bodies {
     /// What the contact feels. Those properties of the surfaces that are fitted do not count.
@@ -40,7 +40,7 @@ impl Bodies {
         Self { pair, arm_per_inertia }
     }
 
-    /// Bodies of which only α is known, with `values` for what is not fitted. All their impacts
+    /// Bodies for which only α is known, with `values` for what is not fitted. All their impacts
     /// have the same speed, which is 1.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ pub struct Column {
     pub values: Vec<Option<f64>>,
 }
 
-/// A quantity that a column may hold, with the size of its unit in that of the fit.
+/// A quantity that a column may hold, with its unit in units of the fit.
 #[derive(Clone, Copy, PartialEq)]
 enum Meaning {
     Angle(f64),
@@ -27,7 +27,7 @@ enum Meaning {
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 impl Meaning {
-    /// The names of all columns but those of errors.
+    /// The names of all columns except columns of errors.
     const NAMES: [(&'static str, Self); 11] = [
         ("centre_impact_angle_deg", Self::Angle(DEGREE)),
         ("centre_impact_angle_rad", Self::Angle(1.0)),
@@ -63,10 +63,11 @@ impl Meaning {
     }
 }
 
-/// The data in `columns`; `rows` are the numbers of the rows, which errors and residuals tell.
+/// The data in `columns`; `rows` are the numbers of the rows, for messages and residuals.
 ///
 /// An impact is given by an angle and a speed, which may be the same `speed_m_per_s` for all rows,
-/// or by two velocities. Without bodies (`scaled`) all speeds are 1 and no column may tell them.
+/// or by two velocities. Without bodies (`scaled`) all speeds are 1, and columns must not give
+/// them.
 ///
 /// ```
 /// use stickslip_practice::fit::{Column, Measured, data};
@@ -229,19 +230,19 @@ pub enum InvalidColumns {
         /// The name of the errors.
         name: String,
     },
-    /// The columns do not tell where the impacts are.
+    /// The columns do not determine the impacts.
     #[error(
         "no impact; expected either the column centre_impact_angle_deg or centre_impact_angle_rad, or \
          both normal_m_per_s and tangential_m_per_s without any speed"
     )]
     NoImpact,
-    /// The speed is not told once.
+    /// The speed is not given, or given twice.
     #[error(
         "the speed is {}; expected either a column speed_m_per_s or one speed for all rows",
         if *both { "given twice" } else { "missing" }
     )]
     Speed {
-        /// Whether it is told twice.
+        /// Whether the speed is given twice.
         both: bool,
     },
     /// A velocity without bodies.

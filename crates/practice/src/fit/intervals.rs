@@ -25,9 +25,9 @@ pub struct Piece {
     pub low: f64,
     /// Its upper end.
     pub high: f64,
-    /// Whether the lower end is that of the range, and the piece may go on below.
+    /// Whether the lower end is the end of the range, and the piece may go on below.
     pub from_end_of_range: bool,
-    /// Whether the upper end is that of the range, and the piece may go on above.
+    /// Whether the upper end is the end of the range, and the piece may go on above.
     pub to_end_of_range: bool,
 }
 

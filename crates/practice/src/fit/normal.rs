@@ -29,7 +29,7 @@ pub struct DampingFit {
     pub interval: Interval,
 }
 
-/// The damping of the settings at normal incidence: fitted, given by ε_n, or that of the bodies.
+/// The damping of the settings at normal incidence: fitted, given by ε_n, or taken from the bodies.
 pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<DampingFit>), FitError> {
     if let Some(eps_n) = settings.eps_n {
         return Ok((with_eps_n(&settings.bodies, eps_n)?, None));

@@ -13,7 +13,7 @@ pub struct Problem {
     pub bodies: Bodies,
     pub units: Units,
     impacts: Vec<Impact>,
-    /// Standard errors, 1 where there are none.
+    /// Standard errors, 1 where none are given.
     pub errors: Vec<f64>,
     /// What was measured.
     pub observed: Vec<f64>,
@@ -60,7 +60,7 @@ impl Problem {
         Self { bodies, units, impacts, errors, observed }
     }
 
-    /// The largest √(κ/κ₀) of the impacts, where κ₀ is that of normal incidence.
+    /// The largest √(κ/κ₀) of the impacts, where κ₀ is κ at normal incidence.
     pub fn steepest(&self) -> Result<f64, FitError> {
         let values = Values { kappa: 1.0, mu: 1.0, tangential_damping: 0.0, damping: 0.0 };
         let mut steepest: f64 = 1.0;
@@ -89,7 +89,8 @@ impl Problem {
     }
 
     /// Appends what the model says, with the derivatives with respect to κ at normal incidence and
-    /// μ; `None` where there are none, because a switch is a graze, or the law is not the paper's.
+    /// μ; `None` where derivatives do not exist, because a switch is a graze or the law is not the
+    /// paper's.
     pub fn predict_with_slopes(&self, values: &Values) -> Result<Option<Slopes>, FitError> {
         let mut slopes = Slopes::default();
         for impact in &self.impacts {
@@ -100,7 +101,7 @@ impl Problem {
             let Ok(found) = Collider::default().sensitivity(contact) else { return Ok(None) };
             let eps_t = found.eps_t;
             let collided = self.collided(impact, found.eps_n.value, eps_t.value);
-            // κ is proportional to that of normal incidence, ψ to 1/μ.
+            // κ is proportional to κ at normal incidence, ψ to 1/μ.
             let by_kappa = eps_t.kappa * contact.kappa() / values.kappa;
             let by_mu = -eps_t.psi * contact.psi() / values.mu;
             for quantity in &impact.quantities {
@@ -131,7 +132,7 @@ impl Problem {
 
     fn contact(&self, impact: &Impact, values: &Values) -> Result<Contact, FitError> {
         let pair = self.bodies.with(&self.units, values);
-        // The normal motion of a central impact is that of any other.
+        // The normal motion of a central impact is the same as of any other.
         let tangential = if impact.tangential_m_per_s > 0.0 {
             impact.tangential_m_per_s
         } else {

@@ -27,7 +27,7 @@ pub struct Lines<'a> {
 pub struct LineMinimum {
     /// The first and the last of the places of the inner axis with the least misfit around.
     nodes: (usize, usize),
-    /// The coordinate of the inner axis; 0 if there is none.
+    /// The coordinate of the inner axis; 0 if there is no inner axis.
     pub at: f64,
     pub misfit: f64,
 }
@@ -46,7 +46,7 @@ pub struct Line {
 /// where the end of an interval is looked for.
 const SCANNED: f64 = 1e-4;
 const PROFILED: f64 = 1e-8;
-/// Places on both sides of a minimum at which that of a line nearby is looked for.
+/// Places on both sides of a minimum at which the minimum of a line nearby is searched for.
 const AROUND: usize = 3;
 
 /// Whether two misfits differ by no more than rounding.
@@ -87,8 +87,7 @@ impl Lines<'_> {
         Ok(Line { at: outer, basins, minima: minima.collect::<Result<_, _>>()? })
     }
 
-    /// The minimum around places of the inner axis that are the lowest of some, of which `start` is
-    /// the first.
+    /// The minimum around the lowest places of the inner axis; `start` is the first of these.
     fn line_minimum(
         &self,
         outer: f64,
@@ -135,7 +134,7 @@ impl Lines<'_> {
 }
 
 impl Line {
-    /// The least minimum, of which each line has one at least.
+    /// The least minimum. Each line has at least one.
     pub fn best(&self) -> LineMinimum {
         let least = |a: &LineMinimum, b: &LineMinimum| a.misfit.total_cmp(&b.misfit);
         let nowhere = LineMinimum { nodes: (0, 0), at: f64::NAN, misfit: f64::NAN };
@@ -187,8 +186,8 @@ fn bottoms(values: &[f64]) -> (Vec<(usize, usize)>, Vec<usize>) {
     (lowest, basins)
 }
 
-/// The minima of the plane among those of its lines, as coordinates of the outer and the inner
-/// axis. Of equal ones in successive lines, as on a plain, the last one counts.
+/// The minima of the plane among the minima of its lines, as coordinates of the outer and the inner
+/// axis. If successive lines have equal minima, as on a plain, the last one counts.
 pub fn candidates(lines: &[Line]) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     // Whether each minimum of the line before is reached from above.

@@ -1,4 +1,4 @@
-//! Searches for minima and roots; the solvers are those of argmin.
+//! Searches for minima and roots, with the solvers of argmin.
 
 use std::cell::RefCell;
 use std::marker::PhantomData;

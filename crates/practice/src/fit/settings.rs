@@ -1,4 +1,4 @@
-//! What is asked of a fit.
+//! The settings of a fit.
 
 use stickslip_model::{Damping, Law};
 use stickslip_plane::Range;
@@ -18,7 +18,7 @@ pub struct Settings {
     pub free: Vec<Free>,
     /// Where it is looked for.
     pub ranges: Ranges,
-    /// ε_n at normal incidence, which decides the damping instead of that of the bodies.
+    /// ε_n at normal incidence, which decides the damping instead of the bodies.
     pub eps_n: Option<f64>,
     /// The part of the cases in which the intervals hold the true value, from 0.5 to 0.9999.
     pub level: f64,
@@ -55,7 +55,7 @@ impl Settings {
         self.free.iter().copied().filter(|free| *free != Free::Damping).collect()
     }
 
-    /// The data to which the damping is fitted, or those of the tangential motion.
+    /// The data to which the damping is fitted, or the data of the tangential motion.
     pub(super) fn data_of(&self, normal: bool) -> impl Iterator<Item = (usize, &Datum)> + Clone {
         let data = self.data.iter().enumerate();
         data.filter(move |(_, datum)| (datum.quantity == Measured::EpsN) == normal)

@@ -17,13 +17,13 @@ use super::settings::Settings;
 use super::{Fit, FitError, InvalidFit, Mindlin, Minimum, Residual, RootMeanSquare, SCHEMA};
 use crate::time_steps::undamped_contact_time;
 
-/// What the model says of the impacts at all places of the global search. Sets of data of the same
-/// impacts, as those of a simulated experiment, can be fitted with one survey.
+/// What the model says of the impacts at all places of the global search. Several sets of data of
+/// the same impacts, as from simulated experiments, can be fitted with one survey.
 #[derive(Clone, Debug)]
 pub struct Survey {
     settings: Settings,
     units: Units,
-    /// The damping is that of the fit.
+    /// The damping of the fit.
     fixed: Values,
     damping: Option<normal::DampingFit>,
     problem: Problem,

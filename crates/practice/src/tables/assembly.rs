@@ -31,8 +31,8 @@ struct Filled {
     edge: Graph,
 }
 
-/// The arrays of a table. `done` is called for each interval between two walls, whose number
-/// `begin` is told.
+/// The arrays of a table. `begin` receives the number of intervals between walls, and `done` is
+/// called for each of them.
 ///
 /// # Errors
 /// [`TableError`]: a collision cannot be computed, the bound is not reached, or there are too many

@@ -82,7 +82,8 @@ impl Chain {
         y
     }
 
-    /// The itinerary of the collision at a place, computed in `collision`; `None` if there is none.
+    /// The itinerary of the collision at a place, computed in `collision`; `None` if there is no
+    /// collision.
     pub fn itinerary_at(&self, place: [f64; 2], collision: &mut Collision) -> Option<String> {
         let contact = self.plane.contact_at(place).ok()?;
         Engine::Exact.collide_into(contact, collision).ok()?;

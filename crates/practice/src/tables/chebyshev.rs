@@ -12,7 +12,7 @@ pub const ALONG: usize = 8;
 /// The number of coefficients across it.
 pub const ACROSS: usize = 12;
 
-/// A number with so many places after the decimal point. Files are shorter with such numbers.
+/// A number rounded to `places` decimal places. Files are shorter with such numbers.
 pub fn rounded(value: f64, places: i32) -> f64 {
     let scale = 10_f64.powi(places);
     // 0.0 takes the sign from a zero. Large scales leave no place for another digit anyway.
@@ -97,8 +97,8 @@ pub fn double_coefficients(values: &[[f64; ACROSS]; ALONG]) -> [[f64; ACROSS]; A
     columns(&values.each_ref().map(coefficients), coefficients)
 }
 
-/// The rows of coefficients in powers of a polynomial in Chebyshev's basis, of which only the first
-/// `rows` are not 0.
+/// The rows of coefficients in powers of a polynomial in Chebyshev's basis. Only the first `rows`
+/// are not 0.
 pub fn double_powers(c: &[[f64; ACROSS]; ALONG], rows: usize) -> Vec<[f64; ACROSS]> {
     let kept = std::array::from_fn(|i| if i < rows { powers(&c[i]) } else { [0.0; ACROSS] });
     columns(&kept, powers)[..rows].to_vec()

@@ -1,4 +1,4 @@
-//! What tells roughly in which slab and in which strip a point is.
+//! Hints: roughly in which slab and in which strip a point is.
 
 use std::f64::consts::PI;
 
@@ -30,8 +30,8 @@ impl Arrays {
         self.strip_keys = Keys::new(y.low, y.high, MOST_KEYS[1]);
     }
 
-    /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless
-    /// these are too many: tables had half as many keys of y once.
+    /// Sets keys and hints as [`Self::set_hints`] does, but keeps the length of the keys unless
+    /// they are too many: old tables have half as many keys of y.
     #[cfg(feature = "serde")]
     pub(super) fn restore_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
         let shift = self.strip_keys.shift;

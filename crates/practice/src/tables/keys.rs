@@ -1,6 +1,6 @@
-//! Numbers told roughly by their first bits.
+//! Keys: the first bits of numbers, which give their size roughly.
 
-/// The first bits of numbers above 0, which tell roughly how large they are.
+/// The first bits of numbers above 0, which give their size roughly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]

@@ -1,4 +1,4 @@
-//! What is asked of a table.
+//! The settings of a table.
 
 use stickslip_model::{BodyPair, InvalidParameter, Law};
 use stickslip_plane::atlas::Frame;

@@ -78,8 +78,8 @@ impl<'a> Stack<'a> {
         Self { chains, plane, bound: 0.0, grid: 0 }
     }
 
-    /// The graphs of a slab, upwards, the first and the last of which are the edges of the window.
-    /// `None` if the slab has to be divided for them.
+    /// The graphs of a slab, upwards. The first and the last are the edges of the window. `None` if
+    /// the slab has to be divided for them.
     pub fn graphs(&self, slab: &Slab) -> Option<Vec<Graph>> {
         let Range { low, high } = self.plane.sheet().sides[1];
         let edge = |y: f64| std::array::from_fn(|i| if i == 0 { y } else { 0.0 });

@@ -28,9 +28,10 @@ pub struct Table {
     pub bound: f64,
     /// What the verification found.
     pub verification: Verification,
-    /// The itineraries of the atlas' regions, by their numbers; empty unless they were asked for.
+    /// The itineraries of the atlas' regions, by their numbers; empty unless the settings include
+    /// regions.
     pub regions: Vec<String>,
-    /// The intervals of x and y, those of the window.
+    /// The intervals of x and y: the window.
     pub(super) sides: [Range; 2],
     /// The arrays that are looked up.
     pub(super) arrays: Arrays,
@@ -38,8 +39,8 @@ pub struct Table {
 
 /// What the comparison of a table with collisions found.
 ///
-/// The points are none of those with which the table was made: points at random in each strip, and
-/// points on both sides of each boundary, at distances in y from 1e-15 to 0.1 of its strip.
+/// The table was made from other points. These are random in each strip, and on both sides of each
+/// boundary, at distances in y from 1e-15 to 0.1 of its strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -90,10 +91,11 @@ pub struct Arrays {
     pub graphs: Vec<f64>,
     /// How y is stretched in each strip.
     pub strip_stretches: Vec<Stretch>,
-    /// The region of each strip, [`NO_REGION`] if it has none; empty unless regions were asked for.
+    /// The region of each strip, [`NO_REGION`] if it has none; empty unless the settings include
+    /// regions.
     pub regions: Vec<u32>,
-    /// The first row of each strip, of which it has up to eight; its end is where that of the next
-    /// strip is.
+    /// The first row of each strip. A strip has up to eight rows, and ends where the next one
+    /// begins.
     pub first_rows: Vec<u32>,
     /// Rows of twelve coefficients of ε_t, for the powers of the stretched x. Coefficients are for
     /// powers of the stretched y.
@@ -127,7 +129,7 @@ impl Table {
     }
 
     /// The number of the region at x and y, an index of [`Self::regions`]. `None` outside the
-    /// table, in a strip too thin to have one, or if regions were not asked for.
+    /// table, in a strip too thin to have a region, or if the settings do not include regions.
     #[must_use]
     pub fn region(&self, x: f64, y: f64) -> Option<usize> {
         let strip = self.place(x, y)?.strip;

@@ -12,9 +12,9 @@ const OPENING: f64 = 1e-8;
 
 /// x of the turn at which two chains meet with their lower (0) or upper (1) ends.
 ///
-/// Across the opening, x of the boundary over y is close to a parabola. Three crossings of it tell
-/// the y of the turn, and a fourth one its x. `None` where collisions do not have the switches of
-/// the two sides.
+/// Across the opening, x of the boundary over y is close to a parabola. Three crossings of it
+/// determine the y of the turn, and a fourth one its x. `None` where collisions do not have the
+/// switches of the two sides.
 pub fn turn(one: &Chain, other: &Chain, end: usize) -> Option<f64> {
     let traced = one.ends[end];
     let inwards = OPENING * if end == 0 { traced } else { -traced };

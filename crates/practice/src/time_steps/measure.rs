@@ -40,7 +40,7 @@ impl Quantity {
 pub struct Row {
     /// The step, as the number t_c/dt of steps in the undamped contact time.
     pub steps_per_contact: f64,
-    /// Whether the errors are those of a computation that resolves the contact.
+    /// Whether the errors belong to a computation that resolves the contact.
     pub status: Status,
     /// Errors of ε_t; no quantity has errors if the status is [`Status::Unfinished`].
     pub eps_t: Option<Errors>,
@@ -64,7 +64,7 @@ pub enum Status {
     /// All contacts have ended, and the steps resolve their springs.
     Ok,
     /// All contacts have ended, but in some the steps do not resolve a spring, whose oscillation
-    /// then grows. The errors are those of such computations.
+    /// then grows. The errors belong to such computations.
     Unstable,
     /// Some contacts did not end, so that there are no errors.
     Unfinished,

@@ -25,7 +25,7 @@ impl Seconds {
         }
     }
 
-    /// The step in s of which `steps_per_contact` make the undamped contact time.
+    /// The step in s for `steps_per_contact` steps in the undamped contact time.
     #[must_use]
     pub fn step_s(&self, steps_per_contact: f64) -> f64 {
         self.contact_time_s / steps_per_contact

@@ -1,4 +1,4 @@
-//! What is asked of time steps.
+//! The settings of a study of time steps.
 
 use stickslip_model::{Contact, Reduction, quantity};
 
@@ -7,8 +7,7 @@ use super::scheme::Scheme;
 /// The impacts and time steps whose errors are measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// The impacts, of which there are at most [`Self::MOST_CONTACTS`], each counted once for every
-    /// start phase.
+    /// The impacts: at most [`Self::MOST_CONTACTS`], each counted once for every start phase.
     pub contacts: Vec<Contact>,
     /// The steps, as numbers t_c/dt of steps in the undamped contact time, from
     /// [`Self::FEWEST_STEPS`] to [`Self::MOST_STEPS`], in any order.
@@ -18,8 +17,8 @@ pub struct Settings {
     pub phases: usize,
     /// The scheme.
     pub scheme: Scheme,
-    /// The numbers μ and α, of which only the energy knows: its tangential part is (μ²/α) ψ² of its
-    /// normal part.
+    /// The numbers μ and α. Only the energy depends on them: its tangential part is (μ²/α) ψ² of
+    /// its normal part.
     pub reduction: Reduction,
 }
 

@@ -53,8 +53,8 @@ const LONGEST: f64 = 10.0;
 /// same.
 ///
 /// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the
-/// contact has not ended after ten times `duration`, which is how long it lasts without steps, or
-/// after 10⁹ steps, or if numbers are no longer finite.
+/// contact has not ended after ten times `duration` (its duration without steps) or after 10⁹
+/// steps, or if numbers are no longer finite.
 #[must_use]
 pub fn step(
     contact: &Contact,
@@ -132,7 +132,7 @@ impl ForceRule {
         }
     }
 
-    /// Advances both velocities by a step, with the forces at the overlap, and tells the
+    /// Advances both velocities by a step, with the forces at the overlap, and returns the
     /// [`Stepped::stiffness`] of the step. `None` where a limited force has vanished: the overlap
     /// falls in free flight, in which a force would attract until the end.
     fn advance(&mut self, state: &mut State) -> Option<f64> {

@@ -1,4 +1,7 @@
 //! A part of the reproduction with its data.
+//!
+//! The page, the text and the JSON of `reproduce` are made of sections alone. A new part is a new
+//! [`Part`](super::Part): a title, and a function that returns a section.
 
 use std::sync::Arc;
 

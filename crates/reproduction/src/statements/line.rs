@@ -1,7 +1,8 @@
 //! The switches over ψ at one stiffness, with every boundary located.
 //!
 //! The boundaries are traced in a narrow window around the stiffness, and solved for at the
-//! stiffness itself. Those of another model are bisected between samples.
+//! stiffness itself. So they are decided, where samples would guess. Boundaries of another model
+//! are bisected between samples.
 //!
 //! At κ = 18 and 63 Figure 4 has the same boundaries, read off an atlas of its whole plane
 //! (`figures::points`). They are computed twice on purpose, as an independent check: a test holds

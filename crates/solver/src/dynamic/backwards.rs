@@ -12,9 +12,9 @@ use crate::runs::backwards::{original, reverse};
 
 /// Integrates `system` from `start` down to `end` < `start.s`, through every switch on the way.
 ///
-/// It is to [`run_dynamic`] what [`run_backwards`](crate::run_backwards) is to
-/// [`run`](crate::run): directions of guards hold in the direction of integration, transitions are
-/// applied as they are written, and every s that is reported is the original one.
+/// It is to [`run_dynamic`] what [`run_backwards`](crate::run_backwards) is to [`run`](crate::run):
+/// directions of guards hold in the direction of integration, transitions are not inverted, and
+/// every reported s is the original one.
 ///
 /// # Errors
 /// Those of [`run_dynamic`], and [`RunError::Span`] unless `end` < `start.s`.

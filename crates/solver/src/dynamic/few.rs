@@ -1,7 +1,12 @@
 //! Systems of few components and guards, on states of fixed dimension.
 //!
 //! A system is filled up to 2, 4 or 8 components, which stay 0, and to as many guards, which are
-//! off. Its runs are several times as fast as on buffers.
+//! off. The mean error of a step is taken over the components that exist. For two components a run
+//! on buffers is ten times slower, because buffers are moved where arrays dissolve.
+//!
+//! Not every system asks for this ([`DynamicSystem::ON_FIXED_STATES`]), since the engine is
+//! compiled thrice more for each type that does. Systems of formulas do: they are one type for all
+//! texts and recorded functions.
 
 use crate::dynamic::dense::DynamicDense;
 use crate::dynamic::results::{DynamicEvent, DynamicObserver};
@@ -138,7 +143,7 @@ impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Fi
     }
 }
 
-/// Tells the observer of a system what happens to the one that has been filled up.
+/// Reports to the observer of a system what happens to the filled system.
 pub(crate) struct Emptied<'a, O> {
     pub(crate) observer: &'a mut O,
     pub(crate) n: usize,

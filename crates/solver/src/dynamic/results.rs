@@ -92,12 +92,12 @@ pub trait DynamicObserver<Mode> {
     /// The switches of the run accumulated, and it goes on behind them.
     fn on_rest(&mut self, _rest: &Rest<Mode>) {}
 
-    /// The last `switches` switches are no part of the run: they belong to a chain at one instant
-    /// that does not end, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
+    /// The last `switches` switches do not belong to the run. They belong to an endless chain at
+    /// one instant, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
     fn forget(&mut self, _switches: usize) {}
 
-    /// Whether the run should stop. It is asked after every step and every switch, and the run then
-    /// ends with [`Outcome::Stopped`].
+    /// Whether the run should stop, with [`Outcome::Stopped`]. Called after every step and every
+    /// switch.
     fn stops(&self) -> bool {
         false
     }

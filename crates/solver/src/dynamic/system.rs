@@ -9,10 +9,9 @@ use stickslip_number::{Enclosure, Interval, Number};
 
 /// A piecewise-smooth ODE whose number of components is known at run time only.
 ///
-/// The dimension is the length of the state from which a run starts. The slices that a run passes
-/// have these lengths: states and slopes that of the state, values that of [`Self::guards`]. So
-/// nothing can have a wrong length, unless a system expects another dimension than that of its
-/// start.
+/// The dimension is the length of the state from which a run starts. A run passes slices of states
+/// and slopes with this length, and slices of values with the length of [`Self::guards`]. So a
+/// length can only be wrong if a system expects another dimension than its start has.
 ///
 /// The right-hand side and the guards of a mode must also be smooth a little beyond the guards'
 /// zeros, since a trial step may end there.
@@ -25,8 +24,7 @@ pub trait DynamicSystem {
     /// may hold any numbers before.
     fn field(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &mut [f64]);
 
-    /// The guards of `mode`: as many as it has, also none. Their number must be the same whenever
-    /// the same mode is asked for.
+    /// The guards of `mode`, any number of them. A mode must always have the same number.
     fn guards(&self, mode: Self::Mode) -> &[Guard];
 
     /// Writes the values of the guards of `mode` to `values`, which has the length of
@@ -40,13 +38,13 @@ pub trait DynamicSystem {
     /// dimension. They are several times as fast then, and the engine is compiled thrice more.
     const ON_FIXED_STATES: bool = false;
 
-    /// The largest number of guards of a mode, and of [counters](Self::counter). It is asked for if
+    /// The largest number of guards of a mode, and of [counters](Self::counter). Only used with
     /// [`Self::ON_FIXED_STATES`].
     fn most_guards(&self) -> usize {
         usize::MAX
     }
 
-    /// The components that the guards read, in any order; none means all.
+    /// The components that the guards read, in any order; an empty list means all.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
         &[]
     }
@@ -143,8 +141,8 @@ pub trait ReadableDynamic {
         usize::MAX
     }
 
-    /// The components that the guards read, in any order; none means all. Only these are bounded,
-    /// which saves time if they are few of many.
+    /// The components that the guards read, in any order; an empty list means all. Only these are
+    /// bounded, which saves time if they are few.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
         &[]
     }

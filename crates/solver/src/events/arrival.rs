@@ -1,5 +1,5 @@
-//! Guards that are zero where a step ends at which the run must not go on without them: at the end
-//! of the span, at the time of a clock, and at an event of another guard.
+//! Guards that are zero at the end of a step where the run must not miss them: at the end of the
+//! span, at the time of a clock, and at an event of another guard.
 
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
@@ -8,12 +8,12 @@ use crate::system::System;
 
 /// The part of the step over which a guard is differenced, on both sides of the end.
 const REACH: f64 = 1e-3;
-/// The roundings within which a guard is zero where the run must not go on without it. They add up
-/// from event to event.
+/// The number of roundings within which a guard counts as zero there. Roundings add up from event
+/// to event.
 const ARRIVES: f64 = 16.0;
 /// The roundings of time that may hide what a guard does.
 const HIDES: f64 = 65536.0;
-/// A guard that acts is not asked again within so many roundings of time.
+/// A guard that acts is not examined again within this many roundings of time.
 const UNSEEN: f64 = 64.0;
 /// An event this close to the end of its step is the one at the end.
 pub(crate) const SAME: f64 = 1e-6;
@@ -82,8 +82,8 @@ impl<S: System> Examination<'_, S> {
         first
     }
 
-    /// How a guard crosses zero at a place of a step, if it does so in its direction and is zero
-    /// there to within so many roundings, and the error of an `event` there.
+    /// How a guard crosses zero at a place of a step, if it crosses in its direction and is zero
+    /// within some roundings and the error of an `event` there.
     pub(crate) fn arrival(
         &mut self,
         guard: usize,

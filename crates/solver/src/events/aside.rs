@@ -7,22 +7,22 @@ const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
 /// The places that are tried before a guard counts as without value.
 const PLACES: i32 = 8;
 
-/// The narrowest part of a step from `s` of size `h` that can be told from a point.
+/// The narrowest part of a step from `s` of size `h` that is wider than a point.
 pub(crate) fn resolution(s: f64, h: f64) -> f64 {
     (2.0 * f64::EPSILON * s.abs() / h).clamp(FINEST, 1.0)
 }
 
-/// Moves aside from places where a guard has no value: d/|d| has none where d is 0, and what it
-/// does there is known from the values beside it.
+/// Moves aside from places where a guard has no value: d/|d| has no value where d is 0, and the
+/// values beside it show what it does there.
 pub(crate) struct Aside {
-    /// The narrowest part of the step that can be told from a point.
+    /// The narrowest part of the step that is wider than a point.
     resolution: f64,
     nowhere: RunError,
     tried: i32,
 }
 
 impl Aside {
-    /// `resolution` is the narrowest part of the step from `s` that can be told from a point.
+    /// `resolution` is the narrowest part of the step from `s` that is wider than a point.
     pub(crate) fn new(guard: usize, s: f64, resolution: f64) -> Self {
         Self { resolution, nowhere: RunError::GuardNotANumber { guard, s }, tried: 0 }
     }

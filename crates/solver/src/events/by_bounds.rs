@@ -13,11 +13,11 @@ use stickslip_number::Enclosure;
 const HALVINGS: u32 = 3;
 
 impl<S: System> Examination<'_, S> {
-    /// What bounds of a guard along the quick path tell about it. Its six values on the step are
-    /// in `column`.
+    /// What bounds of a guard along the quick path say about it. Its six values on the step are in
+    /// `column`.
     ///
     /// A guard that is monotone or bends in one direction crosses zero once if its ends have
-    /// different signs. Otherwise bounds on parts of the step may tell that.
+    /// different signs. Otherwise bounds on parts of the step may decide that.
     pub(crate) fn glance_at_bounds<M: Method>(
         &mut self,
         guard: usize,
@@ -81,7 +81,7 @@ impl<S: System> Examination<'_, S> {
         bounds.value.sign() != 0.0 || self.side_in_halves(guard, path, (0.0, 1.0), HALVINGS) != 0.0
     }
 
-    /// Whether a guard changes its sign once between two step fractions, from that of `first`:
+    /// Whether a guard changes its sign once between two step fractions, from the sign of `first`:
     /// where its bounds on small parts do not exclude zero, it moves towards the other sign.
     fn crosses_once(
         &mut self,

@@ -14,7 +14,7 @@ const CLOSE: f64 = 1e-6;
 const PART: f64 = 0.25;
 
 impl<S: System> Examination<'_, S> {
-    /// By how much the place of an event may be wrong: by what rounding of time and state, and what
+    /// The error of the place of an event: how far rounding of time and state, and the value that
     /// is left of the guard, move its zero.
     pub(crate) fn error_of(&mut self, event: &Event<S>) -> f64 {
         let Crossed { slope, jump, .. } = event.own();

@@ -1,4 +1,9 @@
 //! The result of examining a step: the guards that fire at one instant, or none.
+//!
+//! An event is what happens at one instant, not what one guard does. Two times are one instant if
+//! the errors of their location overlap; the error is the rounding of time and state over the slope
+//! of the guard. That a guard has crossed zero is a fact, which a transition at the same instant
+//! cannot undo. So all guards of an instant are found before the first one acts.
 
 use crate::lists::List;
 use crate::method::StepOf;

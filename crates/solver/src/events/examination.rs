@@ -15,7 +15,7 @@ pub(crate) struct Examination<'a, S: System> {
     pub(crate) phase: &'a Phase<S>,
     /// The step before it was shortened.
     pub(crate) trial: &'a TrialOf<'a, S::State>,
-    /// The time from the start of the phase to that of the step.
+    /// The time from the start of the phase to the start of the step.
     pub(crate) age: f64,
     /// By how much rounding may have moved a time at the start of the step.
     pub(crate) drift: f64,
@@ -78,8 +78,8 @@ pub(crate) fn values_on<S: System>(
     statistics.guards += if phase.count() > 0 { 5 } else { 0 };
 }
 
-/// Whether the values of each guard between the [`NODES`] are those that the values at the nodes
-/// predict. This is asked of black boxes only, and not of guards that are declared to be smooth.
+/// Whether the values at the [`NODES`] predict the values of each guard between them. Only black
+/// boxes are checked, and not guards that are declared to be smooth.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "in a struct, the compiler keeps them in memory")]
 pub(crate) fn confirmed<S: System>(

@@ -18,13 +18,13 @@ use crate::system::{PerGuard, Room, System};
 pub(crate) const TOGETHER: f64 = 1e-12;
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 pub(crate) const UNSEEN: f64 = 16.0;
-/// A guard that starts from a zero is on its way across it for at most so many roundings of time.
+/// A guard that starts from a zero needs at most this many roundings of time to cross it.
 const FORGETS: f64 = 256.0;
 
 impl<S: System> Examination<'_, S> {
     /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
-    /// which is empty. Guards that fire before it and change nothing are noted. `values` are those
-    /// of the guards at the nodes of the step, and if all are `away` from zero, none fires.
+    /// which is empty. Guards that fire before it and change nothing are noted. `values` are the
+    /// values of the guards at the nodes of the step. If all are `away` from zero, no guard fires.
     #[inline(never)]
     pub(crate) fn look<M: Method>(
         &mut self,
@@ -47,7 +47,7 @@ impl<S: System> Examination<'_, S> {
         }
     }
 
-    /// Decides which guard fires first if the quick look alone does not tell that none fires.
+    /// Decides which guard fires first if the quick look alone does not exclude all guards.
     fn decide<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,
@@ -171,7 +171,8 @@ impl<S: System> Examination<'_, S> {
             let unclear =
                 open.enumerate().find(|(_, (open, status))| **open && **status == Status::Unclear);
             let unclear = unclear.map(|(guard, _)| guard);
-            // Whether a guard fires together with an event at the start is asked on the whole step.
+            // Whether a guard fires together with an event at the start is decided on the whole
+            // step.
             let at_start = |guard| {
                 event.as_ref().is_some_and(|it| it.elapsed == 0.0)
                     && self.phase.values[guard] == 0.0
@@ -211,7 +212,7 @@ impl<S: System> Examination<'_, S> {
             }
         }
         if let Some(event) = event {
-            // Places whose errors do not tell them apart are of one instant, from one to the next.
+            // Places whose errors overlap, from one to the next, are one instant.
             let mut reached: SmallVec<[Located; 2]> =
                 search.located.iter().filter(|it| it.guard == event.guard).copied().collect();
             while let Some(one) = reached.pop() {
@@ -255,7 +256,7 @@ impl<S: System> Examination<'_, S> {
             }
             if let Some(event) = event {
                 let (theta, Bracket { low, high, .. }) = (event.elapsed / h, crossing.bracket);
-                // In the bracket it crosses zero once, so that its sign tells on which side it is.
+                // In the bracket it crosses zero once, so that its sign shows on which side it is.
                 let before = crossing.sign * search.there[guard];
                 if low > (1.0 + TOGETHER) * theta
                     || high >= theta
@@ -295,7 +296,7 @@ impl<S: System> Examination<'_, S> {
         }
         // Whether it fires together with an event at the start shows after the event.
         let may_wait = found.step.h <= TOGETHER * self.trial.h;
-        // On a step that time hardly resolves, signs are those of rounding.
+        // On a step that time hardly resolves, signs are rounding.
         let unseen = found.step.h <= UNSEEN * f64::EPSILON * found.step.s.abs();
         // A quick look would find again what a guard has already been noted for.
         let mut status = if unseen {
@@ -429,8 +430,8 @@ impl<S: System> Examination<'_, S> {
         self.isolate::<M>(guard, step, &column::<S>(values, guard), beginning)
     }
 
-    /// Whether guard `first` acts before guard `second` at one instant: that of higher priority, or
-    /// the one that is listed first.
+    /// Whether guard `first` acts before guard `second` at one instant: it has the higher priority,
+    /// or is listed first.
     pub(crate) fn precedes(&self, first: usize, second: usize) -> bool {
         self.phase.precedes(first, second)
     }
@@ -459,8 +460,7 @@ struct Located {
 }
 
 impl Located {
-    /// Whether the errors of the places do not tell two crossings apart, so that they are of one
-    /// instant.
+    /// Whether the errors of the places of two crossings overlap, so that they are one instant.
     fn is_together_with(&self, other: &Self) -> bool {
         (self.elapsed - other.elapsed).abs() <= self.error + other.error
     }

@@ -5,7 +5,7 @@
 //! Chebyshev polynomials on panels that are narrow enough for degree 8. Bounds on the coefficients
 //! and subdivision isolate its critical points. These cut the step into pieces on which q is
 //! monotone, and on each piece the signs at the ends decide. If a value is smaller than the error
-//! of the dense output, a step of the method to that point tells its sign. A panel that stays
+//! of the dense output, a step of the method to that point gives its sign. A panel that stays
 //! unresolved however narrow it is has a kink, a jump or a pole.
 //!
 //! Few steps come here. A curve is therefore dispatched at run time, and all this is compiled once,
@@ -43,10 +43,10 @@ const GROWS: f64 = 4.0;
 const AROUND: f64 = 64.0;
 /// A value that is this part of those on both sides of it is near a zero.
 const VANISHES: f64 = 1e-3;
-/// On a step of which this part cannot be told from a point, time is resolved poorly.
+/// If this part of a step is no wider than a point, time is resolved poorly on the step.
 const SHORT: f64 = 0.01;
-/// The least part of the step that may be a plateau. Differences of a guard are zero on shorter
-/// ones by their rounding.
+/// The least part of the step that may be a plateau. On a shorter part, differences of a guard may
+/// be zero by rounding.
 const PLATEAU: f64 = 1e-6;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
@@ -79,7 +79,7 @@ pub(crate) enum Verdict {
     None,
     /// The first crossing of the guard.
     Crossing(Bracket),
-    /// The first crossing of the guard, if it is one upwards and those were asked for too.
+    /// The first crossing of the guard, if it is upwards and upward crossings were wanted too.
     Rise(Bracket),
     /// The guard bounds a domain and is negative from the start.
     StartsBelow,
@@ -98,7 +98,7 @@ pub(crate) struct Task {
     pub(crate) both: bool,
     /// The value at the end of the step.
     pub(crate) end: f64,
-    /// The narrowest part of the step that can be told from a point.
+    /// The narrowest part of the step that is wider than a point.
     pub(crate) resolution: f64,
     /// The widest panel on which the guard may be expanded.
     pub(crate) widest: f64,
@@ -176,7 +176,7 @@ pub(crate) fn first_crossing(
                         guess,
                     }));
                 }
-                // The first sign that can be told is that with which the curve leaves its zero.
+                // The first certain sign is the sign with which the curve leaves its zero.
                 None if value < 0.0 => match hump(quotient, (theta, value), hidden) {
                     Some(bracket) => return ControlFlow::Break(Verdict::Crossing(bracket)),
                     None if task.domain => return ControlFlow::Break(Verdict::StartsBelow),
@@ -243,10 +243,10 @@ fn is_flat(quotient: &mut Quotient<'_>, rounding: f64) -> bool {
 /// The place of a pole at which a curve changes its sign between two places, near `guess`. The
 /// result is `None` if it is not a pole.
 ///
-/// The places are first brought together as closely as time is resolved. What the values are there
-/// is compared with those at the places, or with those around them if these are close to the pole
-/// already. Without the first step, a guard that goes up and down often would pass for a pole where
-/// the places around are near its other zeros.
+/// The places are first brought together as closely as time is resolved. The values there are
+/// compared with the values at the places, or with values around them if the places are close to
+/// the pole already. Without the first step, a guard that goes up and down often would pass for a
+/// pole where the places around are near its other zeros.
 fn pole(
     quotient: &mut Quotient<'_>,
     low: (f64, f64),
@@ -257,7 +257,7 @@ fn pole(
     let (least, size) = (low.1.min(-high.1), low.1.max(-high.1));
     let width = high.0 - low.0;
     let close = width < NARROWEST;
-    // Nothing tells more quickly that it is a zero.
+    // No quicker test shows that it is a zero.
     let enough = if close { VANISHES * least } else { 2.0 * size };
     if quotient.at(guess).abs() <= enough {
         return None;
@@ -389,7 +389,8 @@ fn walk<B>(
                     notice(Notice::Touch(Touch { theta, margin: value * power(theta, order) }));
                 }
                 if value.abs() * power(theta, order) <= accuracy.noise_on(&panel) + hidden {
-                    // It has no sign. The points that follow tell whether the guard goes through.
+                    // The value has no sign. The points that follow show whether the guard goes
+                    // through.
                     continue;
                 }
             }

@@ -1,7 +1,7 @@
 //! The place of a switch, located by steps of the method.
 //!
-//! The dense output only tells where to begin. Each iteration takes a step from the same start to a
-//! trial place. So a switch is as accurate as any other point of the run.
+//! The dense output only gives the place to begin. Each iteration takes a step from the same start
+//! to a trial place. So a switch is as accurate as any other point of the run.
 
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
@@ -23,8 +23,8 @@ pub(crate) const NOWHERE: f64 = 1e-20;
 /// change on the scale of the step, so that cancellation cannot spoil the slope, however short the
 /// step is.
 pub(crate) const REACH: f64 = 1e-3;
-/// A place without a value is that of the switch if it is in a bracket of this width, in parts of
-/// the step that can barely be told from a point.
+/// A place without a value is the place of the switch if it is in a bracket of this width, in units
+/// of the narrowest resolved part of the step.
 pub(crate) const AT_HOLE: f64 = 16.0;
 
 /// A guard is steep if it changes by this part of its largest value within [`BRIDGE`].

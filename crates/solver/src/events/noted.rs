@@ -29,7 +29,8 @@ impl<S: System> Examination<'_, S> {
         self.notes.iter().filter(move |note| note.guard == guard || note.simultaneous[guard])
     }
 
-    /// Notes an event that changes nothing. If it is `together` with the one before, both are one.
+    /// Notes an event that changes nothing. If it is `together` with the event before, both are one
+    /// event.
     pub(crate) fn note(&mut self, event: &Event<S>, together: bool) {
         if together
             && let Some(last) = self.notes.last_mut()

@@ -5,11 +5,11 @@ use smallvec::SmallVec;
 use crate::events::isolate::{Notice, Touch};
 use crate::hybrid::{Grazing, Pole};
 
-/// Notices of a guard that are closer together than this part of the step are one: `Either` is
+/// Notices of a guard that are closer together than this part of the step count as one: `Either` is
 /// examined in both directions, and shortened steps are examined again.
 const SAME: f64 = 1e-8;
 
-/// So many notices on a step allocate nothing.
+/// The number of notices on a step up to which nothing is allocated.
 pub(crate) const FEW: usize = 4;
 
 /// What isolation notices of a guard besides its crossings, for the observer.

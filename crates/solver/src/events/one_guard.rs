@@ -29,14 +29,14 @@ use crate::system::{PerGuard, System};
 pub(crate) const LONGER: i32 = 26;
 
 impl<S: System> Examination<'_, S> {
-    /// Whether bounds decide about a guard of a readable system. Where one asks, `S::READABLE`
-    /// comes first: it is a constant, so that black boxes are compiled without the code for bounds.
+    /// Whether bounds decide about a guard of a readable system. In conditions, `S::READABLE` comes
+    /// first: it is a constant, so that black boxes are compiled without the code for bounds.
     #[inline(always)]
     fn has_bounds(&self, guard: usize) -> bool {
         !self.phase.guards[guard].is_smooth()
     }
 
-    /// What a quick look at a step tells about each guard.
+    /// What a quick look at a step shows about each guard.
     pub(crate) fn glances<M: Method>(
         &mut self,
         step: &StepOf<S::State>,
@@ -59,7 +59,7 @@ impl<S: System> Examination<'_, S> {
         statuses
     }
 
-    /// What a quick look at a step tells about a guard. The quick `path` is made if it is needed.
+    /// What a quick look at a step shows about a guard. The quick `path` is made if it is needed.
     pub(crate) fn glance_at<M: Method>(
         &mut self,
         guard: usize,
@@ -80,7 +80,7 @@ impl<S: System> Examination<'_, S> {
         }
     }
 
-    /// What the six values of a guard tell about it.
+    /// What the six values of a guard show about it.
     fn glance<M: Method>(&self, guard: usize, column: &[f64; 6]) -> Status {
         let (direction, order) =
             (self.phase.guards[guard].direction(), self.phase.zero_orders[guard]);
@@ -146,7 +146,7 @@ impl<S: System> Examination<'_, S> {
         // A tiny value at the start may stand for the side from which the guard came.
         if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
             if step.h < self.trial.h {
-                // A longer step will tell.
+                // A longer step will decide.
                 return Ok(Some(Status::Clear));
             }
             let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
@@ -157,7 +157,7 @@ impl<S: System> Examination<'_, S> {
             return Err(RunError::GuardNotANumber { guard, s: step.s });
         }
         if S::READABLE && values.iter().any(|value| value.is_nan()) {
-            // Bounds do not tell where a guard has no value.
+            // Bounds decide nothing where a guard has no value.
             return Ok(None);
         }
         self.statistics.isolations += 1;

@@ -111,8 +111,8 @@ impl<F: Shape> Path<F> {
     }
 
     /// The path between two step fractions from the state `y` in the middle, with its first and
-    /// second derivatives by the time. The result tells whether only rounding is left of its
-    /// error. It is `None` if the path is not much more accurate than `self`.
+    /// second derivatives by the time. The result says whether only rounding is left of the error,
+    /// and is `None` if the path is not much more accurate than `self`.
     pub(crate) fn local(
         &self,
         (low, high): (f64, f64),

@@ -1,4 +1,10 @@
 //! The active mode with its guards, between two steps.
+//!
+//! A guard that stood on its zero is remembered beyond its phase. Another guard may act at the same
+//! instant and lead to a mode in which the first guard is still on its zero, wherever rounding has
+//! put it. So a phase without length hands on which guards stood on zero. A guard that changes its
+//! sign with the mode, or whose sign a prescribed run turns, is recognised by the size of its
+//! value.
 
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard};
@@ -93,8 +99,8 @@ impl<S: System> Phase<S> {
         self.guards[guard].direction() == Direction::Clock
     }
 
-    /// Whether guard `first` acts before guard `second` at one instant: that of higher priority, or
-    /// the one that is listed first.
+    /// Whether guard `first` acts before guard `second` at one instant: it has the higher priority,
+    /// or is listed first.
     pub(crate) fn precedes(&self, first: usize, second: usize) -> bool {
         let rank = |guard: usize| (-i16::from(self.guards[guard].rank()), guard);
         rank(first) < rank(second)

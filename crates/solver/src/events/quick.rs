@@ -4,6 +4,9 @@
 //! the cost of five guard evaluations, one of them at the end of the step; for black boxes that are
 //! not declared to be smooth, three more are compared with them. All other cases go to
 //! [`crate::events::isolate`].
+//!
+//! The dense output is not used here: with the 8(5,3) pair it costs three more stages. A first look
+//! at six states costs about a fifth of a cheap step.
 
 use crate::lists::{List, Shape};
 
@@ -18,7 +21,7 @@ use tables::{
 /// The rounding of a Bernstein coefficient, relative to the largest one.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// What the six values of a guard tell about its sign on the step.
+/// What the six values of a guard show about its sign on the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Quick {
     /// The guard is positive throughout.

@@ -35,8 +35,8 @@ impl Crossing {
 }
 
 impl Status {
-    /// What the six values of a guard that starts from a zero of this `order` tell about it. The
-    /// part `trust` of the next-to-last term of their expansion counts as error.
+    /// What the six values show about a guard that starts from a zero of this `order`. The part
+    /// `trust` of the next-to-last term of their expansion counts as error.
     pub(crate) fn from_values(
         column: &[f64; 6],
         direction: Direction,

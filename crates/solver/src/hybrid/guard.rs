@@ -90,14 +90,15 @@ impl Guard {
     /// Declares that the guard starts from a zero of this order whenever the mode is entered, also
     /// at the start of the run.
     ///
-    /// A guard that is exactly 0 there and rises does not need this. Two kinds of guards do: those
-    /// whose value may differ from 0 by rounding, and those with a double zero, because their side
-    /// after the zero could not be told otherwise.
+    /// A guard that is exactly 0 there and rises does not need this. Two kinds of guards do: guards
+    /// whose value may differ from 0 by rounding, and guards with a double zero, whose side after
+    /// the zero would be unknown otherwise.
     ///
     /// The zero is divided out before the search for roots. So the guard does not fire at the
-    /// start, and nobody has to nudge the state away from it. A value there that is only due to
-    /// rounding of the state counts as zero. A double zero is most accurate if guard and slope are
-    /// components of the state that start from exactly 0.
+    /// start, and nobody has to nudge the state away from it; a nudge or a dead time would miss a
+    /// switch that follows soon. A value there that is only due to rounding of the state counts as
+    /// zero. A double zero is most accurate if guard and slope are components of the state that
+    /// start from exactly 0.
     #[must_use]
     pub const fn from_zero(self, order: u32) -> Self {
         Self { zero_order: order, ..self }
@@ -113,7 +114,8 @@ impl Guard {
     /// transitions. With a count of 0 it never ends the run.
     ///
     /// Guards are counted by their place, whatever the mode, or by the
-    /// [counter](crate::HybridSystem::counter) that the system gives them.
+    /// [counter](crate::HybridSystem::counter) that the system gives them. A counter is needed
+    /// where one place in the list holds different guards in different modes.
     #[must_use]
     pub const fn terminal_after(self, count: u32) -> Self {
         Self { terminal: count, ..self }
@@ -130,9 +132,8 @@ impl Guard {
         Self { smooth: true, ..self }
     }
 
-    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, those
-    /// of higher priority act first, and those of one priority in the order in which they are
-    /// listed.
+    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, guards
+    /// of higher priority act first, and guards of equal priority in the order of the list.
     #[must_use]
     pub const fn priority(self, priority: i8) -> Self {
         Self { priority, ..self }
@@ -163,7 +164,7 @@ impl Guard {
         self.terminal == 1
     }
 
-    /// Whether six values tell enough: the guard is smooth, or not part of the mode.
+    /// Whether six values are enough: the guard is smooth, or not part of the mode.
     pub(crate) fn needs_no_look(&self) -> bool {
         self.smooth || !self.direction.has_values()
     }
@@ -191,7 +192,7 @@ impl Guard {
         self.smooth
     }
 
-    /// The priority with which the guard acts among those of one instant.
+    /// The priority with which the guard acts among the guards of one instant.
     pub(crate) fn rank(&self) -> i8 {
         self.priority
     }

@@ -12,9 +12,9 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// Further guards of the mode that vanish at the same place, one bit each; of a mode with more
     /// than 64 guards, the first 64 are named.
     ///
-    /// Those that cross zero here act next, with an event of their own at the same place. If mode
-    /// and state go on unchanged, these are the guards that cross here in their direction and
-    /// change nothing either: they have fired with this event and do not fire again.
+    /// Guards that cross zero here act next, with an event of their own at the same place. If mode
+    /// and state go on unchanged, the guards listed cross here in their direction and change
+    /// nothing either: they have fired with this event and do not fire again.
     pub simultaneous: u64,
     /// The guard's largest value in the phase divided by its slope here, in units of s. An error
     /// of the guard, relative to its largest value, moves the switch by the error times this
@@ -33,7 +33,7 @@ pub struct SwitchEvent<Mode, const N: usize> {
 }
 
 /// A guard came so close to zero, or was beyond zero so briefly, that the dense output could not
-/// tell whether it fires. A step of the method to the extremum decided it.
+/// decide whether it fires. A step of the method to the extremum decided it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Grazing<Mode> {
@@ -90,6 +90,9 @@ pub struct Rest<Mode> {
 }
 
 /// Receives what a run finds, in order.
+///
+/// A run returns no list of switches. It reports them while it goes on, so that a sweep allocates
+/// nothing. [`Recorder`](crate::Recorder) is the observer that keeps everything.
 pub trait Observer<Mode, const N: usize> {
     /// Whether the run calls [`Self::on_segment`]. Dense output costs further stages.
     const WANTS_SEGMENTS: bool = false;
@@ -109,12 +112,12 @@ pub trait Observer<Mode, const N: usize> {
     /// The switches of the run accumulated, and it goes on behind them.
     fn on_rest(&mut self, _rest: &Rest<Mode>) {}
 
-    /// The last `switches` switches are no part of the run: they belong to a chain at one instant
-    /// that does not end, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
+    /// The last `switches` switches do not belong to the run. They belong to an endless chain at
+    /// one instant, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
     fn forget(&mut self, _switches: usize) {}
 
-    /// Whether the run should stop. It is asked after every step and every switch, and the run then
-    /// ends with [`Outcome::Stopped`].
+    /// Whether the run should stop, with [`Outcome::Stopped`]. Called after every step and every
+    /// switch.
     fn stops(&self) -> bool {
         false
     }
@@ -145,7 +148,7 @@ pub enum Outcome {
     StepLimit,
     /// [`Options::max_switches`](crate::Options::max_switches) was reached.
     SwitchLimit,
-    /// The observer asked for it ([`Observer::stops`]).
+    /// The observer stopped the run ([`Observer::stops`]).
     Stopped,
     /// The switches accumulate.
     Zeno {

@@ -1,4 +1,7 @@
 //! The times at which a clock fires.
+//!
+//! A clock is a guard: it has a place in the list, a priority, a count and a transition. Only its
+//! time is found in another way.
 
 use crate::runs::InvalidTimes;
 
@@ -18,7 +21,7 @@ impl Times {
     ///
     /// # Errors
     /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
-    /// ones count once.
+    /// times count once.
     pub fn new(mut times: Vec<f64>) -> Result<Self, InvalidTimes> {
         InvalidTimes::check(&times)?;
         if times.first() > times.last() {

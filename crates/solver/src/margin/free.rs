@@ -169,7 +169,7 @@ impl<M: Method, S: System> Listing<'_, M, S> {
         }
     }
 
-    /// The guards of a mode, after those of the exits have fired.
+    /// The guards of a mode, after the guards of the exits have fired.
     fn guards(&self, mode: S::Mode) -> PerGuard<S, Guard> {
         let mut guards = guards_of(self.system, mode);
         for exit in &self.exits {
@@ -233,8 +233,8 @@ impl<M: Method, S: System> Listing<'_, M, S> {
                     Kind::Minimum => Place::Minimum { near, number },
                     Kind::Maximum => Place::Maximum { near, number },
                 };
-                // Of a guard that may be on either side of zero, an extremum that is turned away
-                // from zero is none that touches it.
+                // A guard may be on either side of zero. An extremum that is turned away from zero
+                // does not touch it.
                 if bounds || at.value >= 0.0 {
                     self.add(guard, place, at);
                     last = last.max(at.s);
@@ -260,8 +260,7 @@ impl<M: Method, S: System> Listing<'_, M, S> {
         self.add(fires, Place::Branch(exit), Taken { s, value });
     }
 
-    /// What is found from the start of a phase up to `until`; if the run fails, what it found
-    /// before.
+    /// The margins from the start of a phase up to `until`, or up to where the run fails.
     fn watch(&self, phase: &Phase<'_, S>, until: f64, what: (usize, Watch)) -> Vec<Taken> {
         let &Start { mode, s, ref state } = &phase.start;
         match watch::<M, S>(self.system, (mode, s, state), until, self.options, &[], what) {
@@ -284,7 +283,7 @@ fn way(own: Guard, at_start: f64, lasts: bool) -> Way {
     match own.direction() {
         Direction::Below if !lasts => Way::AtOnce,
         Direction::Rising => Way::Rising,
-        // The guard has not fired before, so that its sign is that of its start.
+        // The guard has not fired before, so that it has the sign of its start.
         Direction::Either if at_start < 0.0 => Way::Rising,
         _ => Way::Falling,
     }

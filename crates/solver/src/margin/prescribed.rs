@@ -58,8 +58,8 @@ pub(super) struct Watched {
 /// A run that has followed its exits, and what it found.
 type Ended<S> = (End<S>, Watched);
 
-/// Follows `exits` and then watches `guard`. The result is `None` if the run cannot follow all
-/// exits. If the run fails while it looks for extrema, those before are the second result.
+/// Follows `exits` and then watches `guard`. The result is `None` if the run does not follow all
+/// exits. If the run fails while it looks for extrema, the second result holds the extrema before.
 pub(super) fn watch<M: Method, S: System>(
     system: &S,
     (mode, s, y): (S::Mode, f64, &S::State),
@@ -98,7 +98,7 @@ pub(super) fn watch<M: Method, S: System>(
     Ok(Some((End { outcome, s, mode: mode.mode, state, decided, statistics }, seen)))
 }
 
-/// Whether the condition of a transition is positive; `None` if it has none.
+/// Whether the condition of a transition is positive; `None` if the transition has no condition.
 pub(super) fn branch<S: System>(
     system: &S,
     mode: S::Mode,
@@ -184,7 +184,7 @@ impl<Mode> PhaseMode<Mode> {
 }
 
 impl<S: System> Prescribed<'_, S> {
-    /// The time of a clock in this phase, if the guard is one.
+    /// The time of a clock in this phase, if the guard is a clock.
     fn due(&self, at: &PhaseMode<S::Mode>, guard: usize) -> Option<f64> {
         let guards = guards_of(self.system, at.mode);
         let is_clock =
@@ -247,8 +247,7 @@ impl<S: System> Prescribed<'_, S> {
         (if at.rises == (kind == Kind::Minimum) { -rate } else { rate }, rounding)
     }
 
-    /// What is left of the guard that is watched, or of its extremum, where the zero from which it
-    /// starts is divided out.
+    /// The guard that is watched, or its extremum, with the zero from which it starts divided out.
     fn divided(at: &PhaseMode<S::Mode>, s: f64, value: f64) -> f64 {
         #[expect(clippy::cast_possible_wrap, reason = "an order is a small number")]
         let power = (s - at.began).powi(at.order as i32);
@@ -304,7 +303,7 @@ impl<S: System> Prescribed<'_, S> {
         }
     }
 
-    /// What is watched where the run has ended, if it is watched there.
+    /// The margin at the end of the run, if it is watched there.
     fn at_last<M: Method>(&self, run: &End<Self>, options: &Options) -> Option<Taken> {
         let (at, mode, s, y) = (&run.mode, run.mode.mode, run.s, &run.state);
         let regular = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);

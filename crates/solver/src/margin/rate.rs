@@ -4,10 +4,11 @@
 //! differences is a small part of the longest step so far. Error control knows the scale on which
 //! the solution changes, so this works in any unit of time.
 //!
-//! A rate that rounding may have given its sign says nothing. For a readable system the rate is
-//! enclosed, with a state and a time that are known up to their last digit, so that this is
-//! decided. A black box has no bounds: the effect of one rounding of each value is known, and noise
-//! beyond that is measured where a step starts.
+//! A rate whose sign may be rounding says nothing. For a readable system the rate is enclosed, with
+//! a state and a time that are known up to their last digit, so that this is decided. A black box
+//! has no bounds: the effect of one rounding of each value is known, and noise beyond that is
+//! measured where a step starts. It shows in differences of sixth order: along the solution, and
+//! where all components move by some tolerances, since a state at rest rounds nothing.
 
 use std::cell::{Cell, RefCell};
 
@@ -27,7 +28,7 @@ const REACH: f64 = 1.0 / 256.0;
 /// tolerances apart.
 const TOLERANCES: f64 = 512.0;
 
-/// The rounding of a guard or of its rate, as a part of it; that of time is a sixteenth.
+/// The rounding of a guard or of its rate, relative to it; the rounding of time is a sixteenth.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The reach of the differences that replace unknown rates, and the noise of rates.

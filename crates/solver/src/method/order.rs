@@ -8,7 +8,7 @@ const SHOWS: f64 = 10.0;
 /// slope: twice the standard error of that difference. The difference has four times the standard
 /// error of the whole slope, as each half has an eighth of the whole's sum of squares.
 const STRAIGHT: f64 = 8.0;
-/// The fewest points of a fit, and the number of finest steps that tell the level of rounding.
+/// The fewest points of a fit, and the number of finest steps that show the level of rounding.
 const FEW: usize = 5;
 
 /// The order of convergence that [`fit_order`] finds: an error falls with this power of the step.
@@ -19,8 +19,8 @@ pub struct Order {
     pub order: f64,
     /// The standard error of the slope, from the scatter about the line.
     pub standard_error: f64,
-    /// The slope over the finer half of the points minus the slope over the coarser half. It tells
-    /// how far the slope still is from its limit for small steps, which the scatter does not show.
+    /// The slope over the finer half of the points minus the slope over the coarser half. It shows
+    /// how far the slope still is from its limit for small steps, which the scatter does not.
     pub drift: f64,
     /// The coarsest step of the fit.
     pub coarsest: f64,
@@ -33,7 +33,7 @@ pub struct Order {
 /// The order of convergence of `errors`, by least squares over the asymptotic range.
 ///
 /// Each entry of `errors` is a step (or a tolerance) and the error that it leaves, with the largest
-/// step first. Errors are those of quantities of size 1. The result is `None` if the asymptotic
+/// step first. Errors are errors of quantities of size 1. The result is `None` if the asymptotic
 /// range does not span a factor of `span`. Three rules decide which steps belong to this range:
 ///
 /// 1. *Rounding.* The root mean square of the last five errors is the level at which errors may

@@ -7,7 +7,7 @@ use crate::method::dop853::Dop853;
 use crate::method::dopri5::Dopri5;
 use crate::method::tableau::Method;
 
-/// A pair that is chosen at run time, for [`run_with`](crate::run_with). Its name is that of the
+/// A pair that is chosen at run time, for [`run_with`](crate::run_with). It has the name of its
 /// method ([`Method::NAME`]).
 ///
 /// ```

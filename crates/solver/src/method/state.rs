@@ -1,4 +1,9 @@
 //! A state, and weighted sums of states.
+//!
+//! There are no intrinsics: the compiler vectorises arrays of fixed size. It may not contract a
+//! product and a sum into one rounding by itself, so `add_multiple` asks for that where the target
+//! has the instruction. The workspace is built for such targets (x86-64-v3); on others the last
+//! digits differ (docs/numerics.md).
 
 use nalgebra::SVector;
 

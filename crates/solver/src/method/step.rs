@@ -1,4 +1,9 @@
 //! One step with a Runge–Kutta pair, as a pure function.
+//!
+//! A step on an array does not keep its stages. Dense output needs them on one step in a thousand,
+//! and computing them again there is cheaper than storing them on all others. A recorded trajectory
+//! therefore costs the stages twice. A step on buffers keeps them, since they lie in a buffer
+//! anyway: with many components, right-hand sides are what costs.
 
 use nalgebra::ArrayStorage;
 
@@ -89,8 +94,8 @@ impl<const N: usize> StepOf<State<N>> {
     }
 
     /// Takes the step `trial` and stores it here. The error of each component is relative to the
-    /// tolerances (`rtol`, `atol`) that `tolerances` returns for its index, and not to those of the
-    /// trial.
+    /// tolerances (`rtol`, `atol`) that `tolerances` returns for its index, and not to the
+    /// tolerances of the trial.
     #[inline(always)]
     pub fn take_with<M: Method>(
         &mut self,
@@ -112,8 +117,8 @@ impl<const N: usize> StepOf<State<N>> {
 
     /// The dense output over the step.
     ///
-    /// This takes the stages of the step again, and then those of the dense output. A step does not
-    /// keep its stages, because few steps need them.
+    /// This takes the stages of the step again, and then the stages of the dense output. A step
+    /// does not keep its stages, because few steps need them.
     pub fn dense<M: Method>(
         &mut self,
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,

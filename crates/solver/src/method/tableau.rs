@@ -37,7 +37,7 @@ pub trait Method: Copy {
     const NAME: &'static str;
     /// The order of the solution that is propagated.
     const ORDER: usize;
-    /// The order that the step-size control assumes, one more than that of the error estimate.
+    /// The order that the step-size control assumes, one more than the order of the error estimate.
     const CONTROL_ORDER: usize;
     /// The number of stages of a step.
     const STAGES: usize;

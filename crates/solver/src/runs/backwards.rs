@@ -17,8 +17,8 @@ use stickslip_number::Enclosure;
 ///
 /// It does what [`run`](crate::run) does, with the same options, observers and accuracy. Directions
 /// of guards hold in the direction of integration: a guard that is `Falling` fires where its value
-/// becomes negative while s decreases. A transition is applied as it is written; nothing inverts
-/// it. `end` may be −∞ if a terminal guard ends the run.
+/// becomes negative while s decreases. A transition is not inverted. `end` may be −∞ if a terminal
+/// guard ends the run.
 ///
 /// Every s that is reported is the original one, so the places of switches decrease. Segments have
 /// a negative size ([`Dense::size`]) and start where s is largest.

@@ -3,8 +3,8 @@
 use crate::hybrid::{Grazing, Observer, Pole, Preempted, Rest, SwitchEvent};
 use crate::method::{Dense, State};
 
-/// Two observers of one run. The first one is called first, and the run stops if either asks for
-/// it. Segments go only to those that want them.
+/// Two observers of one run. The first one is called first, and the run stops if either of them
+/// stops it. Segments go only to observers that want them.
 ///
 /// ```
 /// use stickslip_solver::{Dop853, Options, Recorder, Samples, State, integrate};

@@ -1,10 +1,17 @@
 //! The independent variable of a run, and switches that accumulate in it.
+//!
+//! Phases that become shorter and shorter accumulate; so do phases in which rounding hides how far
+//! a guard goes. A ball above a floor at −1, for example, bounces for ever with heights of the last
+//! digit. Twelve such phases in a row are an accumulation, each shorter than 1e-4 of the run; six
+//! are, if the phases before became shorter and shorter. So are six transitions of one guard at one
+//! instant behind such phases. What is hidden gives no data: the place is extrapolated from the
+//! phases that rounding shows.
 
 use crate::options::Options;
 
 /// The last step may be longer than it should by this part of itself.
 const SLIGHTLY: f64 = 1e-3;
-/// Rounding is asked only about phases that are shorter than this part of the run.
+/// Only phases that are shorter than this part of the run are checked for rounding.
 const BRIEF: f64 = 1e-4;
 
 /// The independent variable as a sum with compensation, so that many short steps add up.
@@ -33,8 +40,10 @@ impl Clock {
         self.s = sum;
     }
 
-    /// By how much rounding may have moved the time at which something happens: its own, and that
-    /// of the state since the start of the run.
+    /// By how much rounding may have moved the time at which something happens: the rounding of the
+    /// time, and of the state since the start of the run. The state carries the rounding of all its
+    /// steps into the next phase. A clock knows its time exactly, so a guard that vanishes with it
+    /// may lie a few roundings of the whole run beside it.
     pub(crate) fn drift(&self) -> f64 {
         f64::EPSILON * (4.0 * (self.s - self.start) + self.s.abs())
     }
@@ -73,7 +82,7 @@ impl Clock {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Zeno {
     start: f64,
-    /// The last phases, as a ring, but for those that hide how far the guards went.
+    /// The last phases, as a ring, except phases that hide how far the guards went.
     gaps: [f64; 2 * Self::HALF],
     count: usize,
     /// The place where the last of them ended.
@@ -89,7 +98,7 @@ pub(crate) struct Zeno {
 impl Zeno {
     /// The number of gaps in either half of those that are compared.
     const HALF: usize = 6;
-    /// The number of gaps that are compared where there are not so many.
+    /// The number of gaps that are compared where there are fewer.
     const FEW: usize = 4;
 
     pub(crate) fn new(s: f64) -> Self {
@@ -190,7 +199,8 @@ impl Zeno {
         let ratios = [last / before, lately * lately];
         let [one, other] = ratios.map(|ratio| last * ratio / (1.0 - ratio));
         let ratio = ratios[0].max(ratios[1]);
-        // Two extrapolations differ by as much as the ratio changes from gap to gap.
+        // The difference between two extrapolations shows how much the ratio changes from gap to
+        // gap.
         (ratio < 1.0).then_some((last * ratio / (1.0 - ratio), (one - other).abs()))
     }
 }

@@ -7,7 +7,7 @@ use crate::method::control::Controller;
 use crate::options::{Options, StepSize};
 
 /// The size of the next attempt after a step from `s` of size `h` that had this `error`. `finite`
-/// tells whether it led to a finite state.
+/// says whether it led to a finite state.
 pub(crate) fn after_rejection<M: Method>(
     (controller, statistics): (&mut Controller, &mut Statistics),
     options: &Options,

@@ -110,7 +110,7 @@ pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
         instant: Instant::new(),
     };
     runner.phase.enter(system, mode, (s, state), &mut runner.fired)?;
-    // What is due at the start fires there.
+    // A clock that is due at the start fires there.
     runner.due = runner.next_due(s.next_down())?;
     let outcome = runner.run::<M>()?;
     runner.observer.on_end(runner.phase.mode, runner.clock.s, &runner.state);
@@ -193,8 +193,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// Takes one step that is good enough. The step ends at a switch if it meets one that changes
     /// something. Other events on it are reported. Returns the outcome if the run ends here.
     ///
-    /// An event contains a step. It is written to the place where it stays, since returning it
-    /// would copy it on every step.
+    /// An event contains a step. It is written to the place where it stays: to return it would copy
+    /// it on every step, which was 8 % of a collision's instructions.
     fn advance<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,
@@ -314,8 +314,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
     }
 
-    /// Goes on at the end of a step, which has arrived at a place that is known exactly, if there
-    /// is one.
+    /// Goes on at the end of a step. If the step has arrived at a place that is known exactly, the
+    /// run continues from that place.
     #[inline(always)]
     fn accept<M: Method>(
         &mut self,
@@ -439,7 +439,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
     }
 
-    /// Tells of touches and poles on the step, up to the place `until`.
+    /// Reports touches and poles on the step, up to the place `until`.
     #[inline]
     fn tell_until(&mut self, until: f64) {
         while let Some(noticed) = self.notices.next_until(until) {
@@ -489,7 +489,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             let least = Controller::FIRST_CUT * self.h;
             let h = self.other_h.replace(self.h).unwrap_or(self.h).max(least);
             let longest = self.system.longest_first_step(to, s, &self.state);
-            // A length that is none would keep the run where it is.
+            // A step of length 0 or below would not advance the run.
             self.h = if longest > 0.0 { h.min(longest) } else { h };
             self.controller.begin();
         }

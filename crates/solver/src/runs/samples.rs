@@ -21,7 +21,7 @@ pub struct Sample<Mode, const N: usize> {
 /// An observer that records the state at given times, and the switches.
 ///
 /// The times have no influence on the steps: the states come from the dense output. At a switch a
-/// sample has the mode and the state after it, or after the last one if several come at once. A
+/// sample has the mode and the state after it, or after the last switch if several come at once. A
 /// time that is equal to the end of the run has the final state, wherever and why ever the run
 /// ends. Times are ascending or descending, and samples are in the order of the run, be it forwards
 /// or [backwards](crate::run_backwards).
@@ -58,7 +58,7 @@ impl<Mode: Copy, const N: usize> Samples<Mode, N> {
     ///
     /// # Errors
     /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
-    /// ones may follow each other.
+    /// times may follow each other.
     pub fn new(times: Vec<f64>) -> Result<Self, InvalidTimes> {
         InvalidTimes::check(&times)?;
         Ok(Self {
@@ -152,7 +152,7 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Samples<Mode, N> {
     }
 }
 
-/// A list of times is not in order, or holds what is not a number.
+/// A list of times is not in order, or holds NaN.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("time {value} at index {index} is out of order; expected numbers, ascending or descending")]
 pub struct InvalidTimes {

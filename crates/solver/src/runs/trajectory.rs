@@ -33,8 +33,8 @@ impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
         &self.segments
     }
 
-    /// The mode and the state at `s`, or `None` if `s` is outside the run. At a switch they are
-    /// those after it, in the direction of the run, also at the end.
+    /// The mode and the state at `s`, or `None` if `s` is outside the run. At a switch these are
+    /// the mode and the state after it, in the direction of the run, also at the end.
     #[must_use]
     pub fn at(&self, s: f64) -> Option<(Mode, State<N>)> {
         if let Some((end, mode, state)) = self.end

@@ -1,4 +1,7 @@
 //! Runs without event location, as a standard of comparison.
+//!
+//! They are a function of their own, and not an option of `run`: the loop of `run` pays nothing for
+//! them, and other functions need not define what the option would mean.
 
 use crate::error::RunError;
 use crate::hybrid::{

@@ -9,8 +9,8 @@ use stickslip_number::{Enclosure, Interval};
 ///
 /// They replace [`Options::rtol`](crate::Options::rtol) and `atol` in the error of a step, which is
 /// still a root mean square over the components. Only the size of the very first step is estimated
-/// with the tolerances of the options. Everything else is the system's, except a
-/// [`step`](HybridSystem::step) of its own, which is not used.
+/// with the tolerances of the options. Everything else is taken from the system, except its own
+/// [`step`](HybridSystem::step), which is not used.
 ///
 /// ```
 /// use stickslip_solver::{Closures, Dop853, Options, Start, State, Weighted, run};

@@ -7,17 +7,21 @@
 //! Çamlıbel, *Automatica* 35 (1999) 467). With one surface this is A < 0. At most 3⁴ = 81
 //! combinations are tried, and surfaces are slid along only where their part of −A is a P-matrix,
 //! so that the solution is attracted to them.
+//!
+//! All surfaces are decided together. One after the other, the answers could contradict each other:
+//! where a solution spirals into the line in which two surfaces meet, each transition would undo
+//! the one before.
 
 use crate::sliding::control::{self, Row, Square, View, minor, solved};
 use crate::sliding::{MOST, Refusal, Side, Sides};
 
-/// A number relative to its scale below which its sign is not taken for granted.
+/// A number that is smaller than this, relative to its scale, has an uncertain sign.
 const SMALL: f64 = 1e-12;
 
-/// Why it has to be decided how the solution goes on.
+/// Why the continuation of the solution has to be decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cause<'a> {
-    /// The run starts, and keeps to these sides where it could go on in several ways.
+    /// The run starts, and keeps these sides where it could go on in several ways.
     Start(&'a [Option<Side>]),
     /// The state has arrived at this surface from a side.
     Arrived(usize),
@@ -98,7 +102,7 @@ pub(super) fn condition(
     if positive { least } else { -least }
 }
 
-/// The sides from which the solution goes on, before it is asked how.
+/// The sides from which the solution goes on, before its continuation is decided.
 fn came_from(view: &impl View<f64>, old: &Sides, cause: Cause<'_>, s: f64, y: &[f64]) -> Sides {
     let mut from = Sides { zeros: [[0; 2]; MOST], unique: true, refusal: None, ..*old };
     if let Cause::Moved(was) = cause {
@@ -135,8 +139,8 @@ fn rounding(view: &impl View<f64>, s: f64, y: &[f64], values: &Row<f64>) -> Row<
     sum
 }
 
-/// Which surfaces the state lies on, one bit each: those that it slides along, the one that it has
-/// arrived at, and those from which rounding of state or time may have moved it away.
+/// Which surfaces the state lies on, one bit each: surfaces that it slides along, the surface at
+/// which it has arrived, and surfaces from which rounding of state or time may have moved it away.
 fn surfaces_at(view: &impl View<f64>, from: &Sides, cause: Cause<'_>, s: f64, y: &[f64]) -> usize {
     let values = view.surfaces(s, y);
     let known = rounding(view, s, y, &values);
@@ -163,7 +167,7 @@ struct Problem {
     a: Square<f64>,
     /// A with rows and columns divided by positive scales.
     scaled: Square<f64>,
-    /// The field below all these surfaces, and those above one each.
+    /// The field below all these surfaces, and the fields above one of them each.
     fields: Vec<f64>,
 }
 
@@ -185,7 +189,7 @@ enum Unsolved {
 enum Verdict {
     No,
     Yes,
-    /// Some multipliers are ±1 as nearly as can be told: the surfaces with these bits.
+    /// Some multipliers are ±1 up to rounding: those of the surfaces with these bits.
     Nearly(usize),
 }
 
@@ -311,7 +315,8 @@ impl Problem {
         (1..1 << self.size).all(|rows| rows & !slides != 0 || minor(&self.scaled, rows) > SMALL)
     }
 
-    /// Whether the solution goes on with this choice of sides. What is `given` is not asked.
+    /// Whether the solution goes on with this choice of sides. Sides that are `given` are not
+    /// checked.
     fn verdict(&self, choice: [Side; MOST], given: usize) -> Result<Verdict, Refusal> {
         let at = match self.outcome(choice) {
             Ok(at) => at,
@@ -384,7 +389,7 @@ impl Problem {
             Cause::Arrived(surface) => Some(surface),
             _ => None,
         };
-        // The solution keeps the sides that it has, but for the surface that it has arrived at.
+        // The solution keeps its sides, except at the surface at which it has arrived.
         let kept = |choice: [Side; MOST]| {
             (0..self.size).all(|i| match cause {
                 Cause::Start(given) => given[self.on[i]] == Some(choice[i]),
@@ -537,7 +542,7 @@ fn scaled(a: &Square<f64>, size: usize) -> Square<f64> {
 }
 
 /// Whether singular equations a λ = b have solutions with |λ| ≤ 1, by elimination with the largest
-/// pivots; that none has such a size is only seen where a single row excludes it.
+/// pivots; a single row must exclude this size for the answer to be no.
 fn singular(mut a: Square<f64>, mut b: Row<f64>, size: usize) -> Unsolved {
     let mut scales = [0.0; MOST];
     for i in 0..size {

@@ -24,6 +24,7 @@ pub trait Switched<const N: usize, const K: usize, const G: usize> {
     type Mode: Copy + PartialEq + fmt::Debug;
 
     /// The derivative of the state where the surfaces have these `signs`, each of them +1 or −1.
+    /// The sign is never 0: the field along a surface is a sum of fields beside it.
     fn field<T: Number>(&self, mode: Self::Mode, signs: &[T; K], s: T, y: &[T; N]) -> [T; N];
 
     /// The functions whose zeros are the surfaces. They may depend on time, and need not be smooth
@@ -125,8 +126,8 @@ impl<S, const K: usize, const G: usize> Filippov<S, K, G> {
     /// The mode in which a run starts from `y`.
     ///
     /// # Errors
-    /// A [`Refusal`] if `y` lies on surfaces from which the solution does not go on, or in several
-    /// ways. Of these, [`Self::mode_from`] takes one.
+    /// A [`Refusal`] if `y` lies on surfaces from which the solution does not go on, or goes on in
+    /// several ways; [`Self::mode_from`] chooses one of these.
     pub fn mode<const N: usize>(
         &self,
         own: S::Mode,
@@ -139,8 +140,8 @@ impl<S, const K: usize, const G: usize> Filippov<S, K, G> {
         start(&Reading::<S, _, N, K, G>(&self.0, own), own, s, y.as_slice(), &[None; K])
     }
 
-    /// As [`Self::mode`], with the sides to which the solution keeps where it could go on in
-    /// several ways.
+    /// As [`Self::mode`], with the sides that the solution keeps where it could go on in several
+    /// ways.
     ///
     /// # Errors
     /// A [`Refusal`] if the solution does not go on.

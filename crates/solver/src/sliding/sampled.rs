@@ -171,8 +171,8 @@ pub struct SampledFilippov<S> {
     guards: OnceLock<Box<Guards>>,
 }
 
-/// The guards of some modes, and those of modes that were entered later: modes may be many, but
-/// few lists differ.
+/// The guards of some modes, and of modes that were entered later: modes may be many, but few lists
+/// differ.
 #[derive(Debug)]
 struct Guards {
     guards: Vec<Guard>,
@@ -214,14 +214,14 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
     /// The mode in which a run starts from `y`.
     ///
     /// # Errors
-    /// A [`Refusal`] if `y` lies on surfaces from which the solution does not go on, or in several
-    /// ways. Of these, [`Self::mode_from`] takes one.
+    /// A [`Refusal`] if `y` lies on surfaces from which the solution does not go on, or goes on in
+    /// several ways; [`Self::mode_from`] chooses one of these.
     pub fn mode(&self, own: S::Mode, s: f64, y: &[f64]) -> Result<SlidingMode<S::Mode>, Refusal> {
         start(&Sampling(&self.system, own), own, s, y, &[None; MOST][..self.system.count()])
     }
 
-    /// As [`Self::mode`], with the sides to which the solution keeps where it could go on in
-    /// several ways; none are given beyond the end of the list.
+    /// As [`Self::mode`], with the sides that the solution keeps where it could go on in several
+    /// ways; surfaces beyond the end of the list have no given side.
     ///
     /// # Errors
     /// A [`Refusal`] if the solution does not go on.

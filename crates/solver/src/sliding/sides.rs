@@ -31,7 +31,11 @@ impl Side {
     }
 }
 
-/// Why the solution does not go on from a state on one or more surfaces, or not in one way only.
+/// Why the solution does not go on from a state on one or more surfaces, or goes on in several
+/// ways.
+///
+/// A transition cannot fail, so a refusal is a mode. Its field is NaN, which ends the run with an
+/// error, and the switch to the mode says why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The equations for the multipliers are singular: infinitely many of them hold the state on
@@ -71,7 +75,7 @@ impl Sides {
         Self { count, sides, zeros: [[0; 2]; MOST], unique: true, refusal: None }
     }
 
-    /// These sides, from where nothing goes on.
+    /// These sides, from which the solution does not go on.
     pub(super) fn refused(self, refusal: Refusal) -> Self {
         Self { refusal: Some(refusal), zeros: [[0; 2]; MOST], ..self }
     }

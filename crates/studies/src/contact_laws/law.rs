@@ -14,7 +14,7 @@ pub struct LawOnPlane {
     pub named: Named,
     /// ε_t, row by row from the lower edge.
     pub eps_t: Vec<f64>,
-    /// ε_t less that of the paper's law at the same parameters.
+    /// ε_t minus ε_t of the paper's law at the same parameters.
     pub difference: Vec<f64>,
     /// The numbers of switches.
     pub switches: Vec<i32>,

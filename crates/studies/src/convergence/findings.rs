@@ -7,7 +7,7 @@ use super::collisions::engine;
 use super::measure::Coordinates;
 use super::series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
 
-/// Accuracies whose work is told.
+/// Accuracies whose work is reported.
 const TARGETS: [f64; 2] = [1e-6, 1e-10];
 /// Steps in a contact that a simulation of many particles may afford.
 const FEW_STEPS: f64 = 50.0;

@@ -139,7 +139,7 @@ pub fn integrate(
     Ok(Approximation { final_velocity, switches: switches.found, statistics })
 }
 
-/// How large several values are; NaN if there are none.
+/// The size of several values; NaN for an empty list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// The root mean square.

@@ -32,7 +32,7 @@ pub struct PlainTime {
 }
 
 impl PlainTime {
-    /// The system of one contact: that of the paper's law at its κ, ψ and a, whatever law it has.
+    /// The system of one contact: the paper's law at its κ, ψ and a, whatever law it has.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
         Self { contact }

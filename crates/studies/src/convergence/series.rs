@@ -13,8 +13,8 @@ use super::measure::{Coordinates, Errors, Spread, Switching, measure};
 const PER_OCTAVE: i32 = 4;
 /// Tolerances in a decade.
 const PER_DECADE: i32 = 4;
-/// The coarsest step for collisions up to a stiffness of 64. For stiffer ones it is shorter, so
-/// that about as many steps fit into a swing.
+/// The coarsest step for collisions up to a stiffness of 64. For stiffer collisions it is shorter,
+/// so that about as many steps fit into a swing.
 const COARSEST: f64 = 0.25;
 /// The time after which a contact has failed, because steps are too coarse for its end. Without
 /// damping a contact lasts 3.22 in scaled time and 2.62 in s, and less with damping.

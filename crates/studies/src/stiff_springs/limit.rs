@@ -3,7 +3,9 @@
 //! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end
 //! of contact. The height of these oscillations is the [`envelope`]. It tends to κ^{−5/4} times
 //! [`inner::peak`](stickslip_model::inner::peak), and is the same for all of them. All maxima are
-//! found by Brent's method from a bracket, on collisions of the exact engine.
+//! found by Brent's method from a bracket, on collisions of the exact engine. Along κ at fixed ψ
+//! the oscillation would change its height while it passes, and its maxima would lie beside the
+//! envelope.
 
 use std::f64::consts::PI;
 

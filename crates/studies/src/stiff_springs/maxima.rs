@@ -10,7 +10,7 @@ use crate::error::{CollisionFailure, StudyError};
 /// found.
 const MOST_INTEGRATED: f64 = 1e8;
 
-/// Up to this stiffness single oscillations can be told apart in a picture.
+/// Up to this stiffness single oscillations are resolved in a picture.
 pub const MOST_RESOLVED: f64 = 3e3;
 /// Points of an oscillation in such a picture.
 const FINE: f64 = 40.0;

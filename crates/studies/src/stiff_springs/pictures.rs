@@ -10,7 +10,7 @@ use super::limit::BOUND_FACTOR;
 use super::maxima::{LargestVelocity, MOST_RESOLVED};
 use crate::study::Picture;
 
-/// Colours of Okabe and Ito, and shapes that tell series apart without them.
+/// Colours of Okabe and Ito, and shapes that distinguish series without colours.
 const MARKS: [Mark; 4] = [
     Mark { shape: Shape::Disc, colour: "#0072B2" },
     Mark { shape: Shape::Ring, colour: "#D55E00" },

@@ -3,8 +3,8 @@
 /// Calls `found` with every root in (0, 1) of Σ `coefficients[i]` Bᵢ(t), in ascending order.
 ///
 /// The number of sign changes in the coefficients bounds the number of roots. The interval is
-/// halved until this number is 0 or 1 (Farouki and Rajan 1987). In intervals shorter than 2⁻⁴⁰
-/// roots are not told apart: `found` is called once, with the middle of the interval.
+/// halved until this number is 0 or 1 (Farouki and Rajan 1987). Roots within an interval shorter
+/// than 2⁻⁴⁰ are not separated: `found` is called once, with the middle of the interval.
 pub(crate) fn each_root<const N: usize>(coefficients: &[f64; N], found: &mut impl FnMut(f64)) {
     isolate(coefficients, 0.0, 1.0, found);
 }

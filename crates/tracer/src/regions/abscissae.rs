@@ -4,8 +4,8 @@ use crate::cubic::Cubic;
 
 /// The different first coordinates of nodes and vertices, in ascending order.
 ///
-/// Along a boundary that runs straight up they differ by rounding. It is vertical only if they are
-/// one number.
+/// Along a boundary that runs straight up they differ by rounding. The boundary is vertical only if
+/// they are one number.
 pub struct Abscissae {
     /// The least and the greatest of each group, with the number that stands for it.
     groups: Vec<[f64; 3]>,
@@ -13,8 +13,8 @@ pub struct Abscissae {
 }
 
 impl Abscissae {
-    /// Groups the coordinates `values` of a window from `low` to `high`. Those that differ from
-    /// `low` or `high` by rounding become these.
+    /// Groups the coordinates `values` of a window from `low` to `high`. Coordinates that differ
+    /// from `low` or `high` by rounding become `low` or `high`.
     pub fn new(low: f64, high: f64, values: impl Iterator<Item = f64>) -> Self {
         let rounding = 16.0 * f64::EPSILON * low.abs().max(high.abs()).max(high - low);
         let mut values: Vec<f64> = values.chain([low, high]).collect();
@@ -34,7 +34,7 @@ impl Abscissae {
         Self { groups, rounding }
     }
 
-    /// Whether a cubic between two places with one abscissa is vertical but for rounding.
+    /// Whether a cubic between two places with one abscissa is vertical up to rounding.
     pub fn is_straight(&self, cubic: &Cubic) -> bool {
         let first = cubic.points[0].x;
         cubic.points.iter().all(|point| (point.x - first).abs() <= 16.0 * self.rounding)
@@ -64,7 +64,7 @@ mod tests {
         assert_eq!(abscissae.of(near(0.5, 3.0)), first);
         assert_eq!(abscissae.of(0.5001), 0.5001);
         assert_eq!(abscissae.of(near(1.0, -2.0)), 1.0);
-        // A number that was not among them stays.
+        // A number that was not among the coordinates stays.
         assert_eq!(abscissae.of(0.3), 0.3);
     }
 }

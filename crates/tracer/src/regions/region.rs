@@ -14,7 +14,7 @@ pub struct Region<Label> {
     /// The label that the curves around the region have on this side; the most frequent label if
     /// they disagree, and `None` if no curve bounds the region.
     pub label: Option<Label>,
-    /// The area without that of islands. It is exact for the interpolated curves.
+    /// The area without islands. It is exact for the interpolated curves.
     pub area: f64,
     /// A point well inside.
     pub sample: Point,
@@ -100,7 +100,7 @@ pub fn find_disagreements<Label: Clone + Ord, Margin>(
             let vertex = ends(other.0).find(|&vertex| ends(curve).any(|end| end == vertex))?;
             Some((curve, Some(vertex)))
         });
-        // The label is that of a curve, so at least one curve agrees.
+        // The label comes from a curve, so at least one curve agrees.
         let Some((curve, vertex)) = neighbour.or(agreeing.first().map(|side| (side.0, None)))
         else {
             continue;

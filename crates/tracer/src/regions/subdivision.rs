@@ -57,11 +57,10 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
     ///
     /// `tolerance` is the accuracy of the curves, which are interpolated, and of the vertices. A
     /// vertex that is closer than this to the window's boundary lies on the boundary, unless a
-    /// curve leads there that keeps as close to it. A closed curve may repeat its first node as its
-    /// last node.
-    /// Inconsistencies become [`Finding`]s. Without findings the regions are those of the curves.
-    /// Time and memory grow as the number of cubic pieces times the number of curves over one
-    /// abscissa.
+    /// curve that stays as close to the boundary leads there. A closed curve may repeat its first
+    /// node as its last node. Inconsistencies become [`Finding`]s. Without findings the regions are
+    /// exactly the regions of the curves. Time and memory grow as the number of cubic pieces times
+    /// the number of curves over one abscissa.
     ///
     /// # Errors
     /// The input has no meaning: a number is not finite, an index is out of range, or the window

@@ -24,7 +24,7 @@ pub struct VerifyOptions {
     /// The number of random points, spread evenly over the window.
     pub random_points: usize,
     /// The number of random points on each side of every curve. The logarithms of their distances
-    /// from the curve are spread evenly between those of `nearest` and `farthest`.
+    /// from the curve are spread evenly between `nearest` and `farthest`.
     pub near_points: usize,
     /// The least distance from the curve.
     pub nearest: f64,
@@ -54,9 +54,9 @@ pub fn verify<F: Family>(
     verify_with(plane, options, |points| points.iter().map(|point| family.label(point)).collect())
 }
 
-/// Compares the labels of `plane` with those that `labels` returns, in the order of the points.
+/// Compares the labels of `plane` with the results of `labels`, in the order of the points.
 ///
-/// Unlike [`verify`] it asks for all labels at once, so that runs can be parallel.
+/// Unlike [`verify`] it needs all labels at once, so that runs can be parallel.
 ///
 /// # Errors
 /// The distances of `options` are not in order, or the numbers of labels and of points differ.
@@ -87,7 +87,7 @@ pub fn verify_unless_cancelled<Label: Clone + Ord, Margin, Error>(
     for (index, checkpoint) in checkpoints(plane, options).into_iter().enumerate() {
         match plane.locate(&checkpoint.point) {
             Location::Region(region) => places.push((checkpoint, region)),
-            // The sample of a thin region. Those of all regions come first.
+            // The sample of a thin region. The samples of all regions come first.
             Location::OnBoundary { .. } if checkpoint.origin == Origin::Sample => {
                 places.push((checkpoint, index));
             }

@@ -83,8 +83,8 @@ fn of_curve<F: Family>(
     of_merging(family, &own.margin, &at_ends, ends, found);
 }
 
-/// The candidates with the extremum of a curve's margin merging with other ones: a cusp at one end
-/// of the curve that meets what else vanishes at the other one, and a swallowtail.
+/// The candidates in which the extremum of a curve's margin merges with other extrema: a
+/// swallowtail, and a cusp at one end of the curve that meets what else vanishes at the other end.
 fn of_merging<F: Family>(
     family: &F,
     margin: &F::Margin,

@@ -103,8 +103,8 @@ impl<Label: Clone + Ord> Change<Label> {
 
 /// What becomes of the regions between two atlases.
 ///
-/// A region of one atlas is one of the other atlas if it has the same label, and if the sample
-/// point of one lies in the other one.
+/// A region of one atlas corresponds to a region of the other atlas if both have the same label,
+/// and if the sample point of one lies in the other.
 fn effects<F: Family>(samples: [&Sample<F>; 2]) -> Vec<Effect<F::Label>> {
     let planes = samples.map(|sample| &sample.atlas.plane);
     let counts = planes.map(|plane| plane.regions().len());
@@ -128,7 +128,7 @@ fn effects<F: Family>(samples: [&Sample<F>; 2]) -> Vec<Effect<F::Label>> {
         regions.map(|region| label(which, region).clone()).collect()
     };
     let (mut dying, mut born) = (with(0, |count| count == 0), with(1, |count| count == 0));
-    // A narrow region that has moved away from where it was is neither.
+    // A narrow region that has moved away is neither born nor dying.
     dying.retain(|label| match born.iter().position(|other| other == label) {
         Some(moved) => {
             born.remove(moved);

@@ -19,8 +19,9 @@ pub(super) enum Conditions<Margin> {
     Three([Condition<Margin>; 3]),
     /// Both vanish, and their gradients in the plane are parallel.
     Parallel([Condition<Margin>; 2]),
-    /// The first two vanish, and the gradients of the second and the third are parallel: that one
-    /// is known to touch the second one there, which its value tells to half the digits only.
+    /// The first two vanish, and the gradients of the second and the third are parallel: the third
+    /// is known to touch the second there, and its value would determine the place to half the
+    /// digits only.
     Tangent([Condition<Margin>; 3]),
     /// A margin vanishes together with its gradient in the plane.
     Flat(Margin),
@@ -112,7 +113,7 @@ impl<Margin: Clone + PartialEq> Conditions<Margin> {
         }
     }
 
-    /// Names of margins may tell minima apart by their places, which move along.
+    /// Updates the names of margins, which may contain places of minima.
     pub fn move_to<F: Family<Margin = Margin>>(&mut self, family: &F, point: &Point) {
         self.each_margin(|margin| {
             if let Ok(moved) = family.moved(point, margin) {

@@ -12,7 +12,7 @@ use crate::window::Window;
 /// The name of the layout, with its version.
 pub const SCHEMA: &str = "stickslip.family-stack/1";
 
-/// A stack in the layout of its file: what its atlases consist of, and what changes between them.
+/// A stack in the layout of its file: the contents of its atlases, and the changes between them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StackDocument<Label> {
     /// The name of the layout, `stickslip.family-stack/1`.
@@ -24,7 +24,7 @@ pub struct StackDocument<Label> {
     /// The names of the guards that the labels of a hybrid system count; empty if they have none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub guards: Vec<String>,
-    /// The window; none if there is no atlas.
+    /// The window; `None` if there is no atlas.
     pub window: Option<Window>,
     /// The options of every atlas.
     pub options: AtlasOptions,
@@ -32,11 +32,11 @@ pub struct StackDocument<Label> {
     pub width: f64,
     /// The number of atlases that were traced.
     pub atlases: usize,
-    /// What speaks against the stack; none if nothing does.
+    /// What speaks against the stack; `None` if nothing does.
     pub objection: Option<String>,
-    /// The atlases at the values asked for.
+    /// The atlases at the given values.
     pub layers: Vec<LayerDocument<Label>>,
-    /// What changes between them, in the order of the third parameter.
+    /// The changes between the atlases, in the order of the third parameter.
     pub changes: Vec<Change<Label>>,
 }
 

@@ -87,8 +87,8 @@ pub(super) struct Vague<Margin> {
 /// The meeting close to a vague place at which two of its boundaries touch.
 ///
 /// Some boundaries touch for every value of the third parameter, as a graze does with the end at
-/// which it leaves. There values of margins tell the place to half the digits. With the angle
-/// between the two boundaries it is known to about 1e-6.
+/// which it leaves. There the values of margins determine the place to half the digits. The angle
+/// between the two boundaries determines it to about 1e-6.
 pub(super) fn touching<F: Family>(
     family: &impl Fn(f64) -> F,
     vague: &Vague<F::Margin>,
@@ -179,8 +179,8 @@ fn newton<F: Family>(
 /// Whether the third of three conditions passes through zero where the first two hold, as its slope
 /// says, when the third parameter passes.
 ///
-/// A margin behind a graze may vanish wherever two others do, for every value of the parameter, and
-/// be singular there, so that its slope does not tell.
+/// A margin behind a graze may vanish wherever two others do, for every value of the parameter. If
+/// it is singular there, its slope does not show this.
 fn is_passage<F: Family>(
     family: &impl Fn(f64) -> F,
     conditions: &Conditions<F::Margin>,
@@ -225,7 +225,7 @@ fn is_passage<F: Family>(
     told[0] <= told[1]
 }
 
-/// The conditions for the two of three margins whose boundaries are nearly parallel to touch.
+/// The conditions for a touch of those two of three margins whose boundaries are nearly parallel.
 fn tangent<F: Family>(
     family: &impl Fn(f64) -> F,
     conditions: &Conditions<F::Margin>,
@@ -249,8 +249,8 @@ fn tangent<F: Family>(
 
 /// Whether conditions with these derivatives hold at one point only, and not along a curve.
 fn independent(slopes: &Matrix3<f64>) -> bool {
-    /// The least volume of three unit vectors that are told from ones in a plane: derivatives are
-    /// good to 1e-9, and those of slopes to 1e-6.
+    /// Three unit vectors with a smaller volume count as lying in a plane. Derivatives are good to
+    /// 1e-9, derivatives of slopes to 1e-6.
     const LEAST: f64 = 1e-5;
     let mut unit = *slopes;
     for mut row in unit.row_iter_mut() {

@@ -1,4 +1,14 @@
 //! How changes of the structure are isolated between two values of the third parameter.
+//!
+//! Atlases close to a meeting do not show it. Beside a swallowtail, for example, the region between
+//! the cusps has a length with the power 3/2 of the distance and a width with its square; closer
+//! than some 1e-5 of the parameter it is not seen. So a change is first looked for in a bracket as
+//! narrow as the options ask, and if atlases do not differ there, 10 and 100 times as far from the
+//! meeting. Narrow brackets come first, and only meetings between the two atlases count: what is
+//! solved for close to a change need not be its cause.
+//!
+//! A small region that dies in a bracket dies at a solution close behind it, if the atlases beside
+//! that solution have the structure of the bracket's end. A birth is the other way round.
 
 use std::cell::Cell;
 
@@ -23,13 +33,13 @@ type Searched<T, F> = Result<T, StackError<<F as Family>::Error>>;
 
 /// The atlas beside a meeting.
 enum Beside<F: Family> {
-    /// That at the end of the interval.
+    /// The atlas at the end of the interval.
     End,
-    /// One inside the interval.
+    /// An atlas inside the interval.
     Between(Box<Sample<F>>),
-    /// One that is in doubt.
+    /// An atlas that is in doubt.
     Doubtful,
-    /// None: there are as many as there may be, or the watch cancels.
+    /// No atlas: their greatest number is reached, or the watch cancels.
     Refused,
 }
 
@@ -60,7 +70,7 @@ pub(super) struct Search<'a, F: Family, At, E> {
     tried: Vec<Tried<F::Label>>,
 }
 
-/// A meeting at which the structure does not change, as far as atlases within reach tell.
+/// A meeting at which the structure does not change, according to the atlases within reach.
 struct Tried<Label> {
     meeting: Meeting,
     reach: Reach,
@@ -303,9 +313,9 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         self.between(value)
     }
 
-    /// Divides the search at an atlas between the two that agrees. Where that is about as close to
-    /// both as atlases may be to a meeting, or where there is none, meetings are looked for up to
-    /// there.
+    /// Divides the search at an atlas between the two that agrees. If that atlas is about as close
+    /// to both as atlases may be to a meeting, or if there is no such atlas, meetings are searched
+    /// for up to there.
     fn bisect(
         &mut self,
         low: &Sample<F>,
@@ -322,7 +332,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             return Ok(());
         }
         let mut places = PLACES.map(|part| low.value + part * (high.value - low.value)).to_vec();
-        // Where regions may be too small to be seen, an atlas tells nothing.
+        // Where regions may be too small to be seen, an atlas does not help.
         let too_close = |place: f64| {
             let is = |tried: &Tried<_>, reach: Reach, value: f64, widths: f64| {
                 tried.reach == reach && (tried.meeting.value - value).abs() <= widths * width
@@ -358,10 +368,11 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         effects: &[Effect<F::Label>],
         differing: &[Vec<usize>; 2],
     ) -> Option<(Meeting, [f64; 2])> {
-        /// How far the meeting may be, in widths, and as a part of the value, whichever is less.
+        /// The greatest distance of the meeting, in widths, and as a part of the value; the smaller
+        /// one counts.
         const FARTHEST: [f64; 2] = [400.0, 4e-3];
-        /// How far it may be from the region, and the half width of that, as parts of the window's
-        /// shorter extent.
+        /// The greatest distance of the meeting from the region, and the greatest half width of the
+        /// region, as fractions of the window's shorter extent.
         const BESIDE: f64 = 1e-3;
         const SMALL: f64 = 1e-5;
         let greatest = low.value.abs().max(high.value.abs());
@@ -396,9 +407,10 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         self.found.push((change, ends[1].structure.clone()));
     }
 
-    /// The changes found, in order, with the structure behind each. Brackets that overlap are one,
-    /// in doubt. So are those that almost touch each other, unless both are solved for: there the
-    /// structure changes in steps that are too small to tell one change from several.
+    /// The changes found, in order, with the structure behind each. Brackets that overlap become
+    /// one change, in doubt. So do brackets that almost touch each other, unless both are solved
+    /// for: the structure changes there in steps too small to show whether there is one change or
+    /// several.
     pub fn joined(mut self) -> Vec<Found<F>> {
         /// The greatest gap between brackets that are joined, in widths.
         const GAP: f64 = 10.0;

@@ -70,10 +70,10 @@ impl<Label: Clone + Ord> Structure<Label> {
     }
 
     /// The regions of each structure that the other one does not have, by their indices; `None` if
-    /// the structures cannot be told apart.
+    /// the structures do not differ.
     ///
-    /// Regions are told apart first by their labels, then also by the labels beside them, then by
-    /// what is beside those, and so on as long as this tells more of them apart.
+    /// Regions are distinguished first by their labels, then also by the labels beside them, then
+    /// by the neighbours of these, and so on as long as this distinguishes more regions.
     pub fn differing(&self, other: &Self) -> Option<[Vec<usize>; 2]> {
         let both = [self, other];
         let labels = sorted(both.iter().flat_map(|own| own.nodes.iter().map(|node| &node.label)));

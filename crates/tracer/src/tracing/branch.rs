@@ -32,8 +32,8 @@ use crate::window::Point;
 /// A step predicts along the last cubic and corrects along the normal. It is accepted if the
 /// tangent turns little, if the cubic is as close to the boundary as the options ask, and if free
 /// runs on both sides have the labels of the branch. The iterator returns each node one step late,
-/// because a special point between the last two steps may replace the last node. Where the branch
-/// runs past a place at which another boundary begins on it, before runs can tell, the last nodes
+/// because a special point between the last two steps may replace the last node. A branch may run
+/// past a place at which another boundary begins on it before runs show this; then the last nodes
 /// lie behind the vertex of [`Branch::end`].
 ///
 /// ```
@@ -69,13 +69,13 @@ use crate::window::Point;
 /// ```
 pub struct Branch<'a, 'f, F: Family> {
     track: Track<'a, 'f, F>,
-    /// The nodes up to the last foothold that have not been handed out yet.
+    /// The nodes up to the last foothold that have not been returned yet.
     held: Vec<Node>,
     /// The nodes that the iterator returns next.
     ready: VecDeque<Node>,
     end: Option<End<F::Margin>>,
     rejected: usize,
-    /// The shortest step within which touches were searched for in vain.
+    /// The shortest step within which a search for touches found nothing.
     untouched: f64,
     /// Whether the branch has gone past the vertex at which it ends.
     past: bool,
@@ -145,9 +145,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         self.rejected
     }
 
-    /// The nodes after the start up to the end, or `None` if the end lies before the start: a
-    /// branch can go past a vertex before runs tell, and what lies behind it belongs to another
-    /// boundary.
+    /// The nodes after the start up to the end, or `None` if the end lies before the start. A
+    /// branch can go past a vertex before runs show it; the nodes behind the vertex belong to
+    /// another boundary.
     pub(crate) fn rest(&mut self) -> Traced<Option<Vec<Node>>, F> {
         let mut nodes = Vec::new();
         while let Some(node) = self.advance()? {
@@ -182,7 +182,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
 
     /// Shortens the step until it is accepted, or until a vertex ends the branch.
     fn take_step(&mut self) -> Traced<(), F> {
-        /// Touches are searched for again within steps that are so many times as long.
+        /// Touches are searched for again once the step is at most this part of the last step that
+        /// was searched.
         const SHRUNK: f64 = 0.3;
         let Some(from) = self.track.footholds.back().cloned() else { return Ok(()) };
         let runs = self.track.runs;
@@ -245,10 +246,11 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         beyond: Option<&FootholdOf<F>>,
         h: f64,
     ) -> Traced<(), F> {
-        /// A tangency that is so close to another end, as a part of the window's shorter extent, is
-        /// the same place, and better known.
+        /// A tangency this close to another end, as a fraction of the window's shorter extent, is
+        /// the same place, and more accurate.
         const BETTER: f64 = 1e-2;
-        /// A branch that stalls so close to an edge, as a part of the same, leaves there.
+        /// A branch that stalls this close to an edge, as a fraction of the same extent, leaves the
+        /// window there.
         const EDGE: f64 = 1e-7;
         if let Some(special) = cusp::beyond(&self.track, from)? {
             return self.finish_at(special);
@@ -256,7 +258,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let mut found = tangency::begins_on_branch(&self.track, from, beyond)?;
         if found.is_none() {
             let other = special::give_up(&self.track, from, beyond, h)?;
-            // Only where the margin ceases to exist, the end is known by itself.
+            // The end is found without a tangency only where the margin ceases to exist.
             let ceases = other.solved && other.kind == VertexKind::Degenerate;
             let near = BETTER * self.track.runs.scale;
             found = tangency::branch_begins(&self.track, from)?
@@ -339,7 +341,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         Ok(())
     }
 
-    /// Hands out the nodes that were held back.
+    /// Returns the nodes that were held back.
     fn hand_out(&mut self) {
         self.ready.extend(self.held.drain(..));
     }

@@ -1,4 +1,9 @@
 //! A network that grows while it is traced, with an index of its pieces by place.
+//!
+//! Each vertex has an error. Where boundaries touch, one pair of margins determines the place to
+//! half the digits, another pair to all of them. A vertex that is found again with a smaller error
+//! moves to the better place. In the end all other vertices are solved again with the margins of
+//! all curves that end there.
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
@@ -131,8 +136,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         self.enter(curve);
     }
 
-    /// Another vertex that is known as well as places can be told apart, and that is at a place at
-    /// which a vertex was solved for.
+    /// Another vertex at a place for which a vertex was solved. Its error must be no larger than
+    /// the distance at which places are distinguished.
     pub fn same_place(&self, index: usize, special: &Special<Margin>) -> Option<usize> {
         let shortest = SHORTEST * self.scale;
         let is_there = |stop: &Stop| {
@@ -142,9 +147,9 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         (0..self.stops.len()).find(|&other| other != index && is_there(&self.stops[other]))
     }
 
-    /// The vertex that cannot be told from `index`: a curve leads from the one to the other, and is
-    /// shorter than `near`; or a branch stalled at `index`, and the curve is shorter than what runs
-    /// can tell in a narrow window.
+    /// A vertex that cannot be distinguished from `index`. A curve leads from one to the other, and
+    /// is shorter than `near`; or a branch stalled at `index`, and the curve is shorter than runs
+    /// can resolve in a narrow window.
     pub fn indistinct(&self, index: usize, near: f64) -> Option<usize> {
         /// The greatest length of the curve, as a fraction of the window's shorter extent.
         const STALLED: f64 = 1e-5;
@@ -180,8 +185,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
-    /// Leads the curves that end at a vertex to another one, and removes the first vertex with the
-    /// short curves between the two, and those that lead back to it.
+    /// Leads the curves that end at a vertex to another one. Removes the first vertex, the short
+    /// curves between the two, and curves that lead back to it.
     pub fn join(&mut self, index: usize, target: usize) {
         let from = self.stops[index].point;
         let point = self.stops[target].point;
@@ -221,7 +226,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
-    /// Removes a vertex at which no curve ends. All later ones have other indices then.
+    /// Removes a vertex at which no curve ends. The indices of all later vertices change.
     fn remove_vertex(&mut self, index: usize) {
         self.stops.remove(index);
         self.network.vertices.remove(index);
@@ -277,8 +282,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
-    /// Whether known curves through a place lead from one label to another, in any order: they are
-    /// closer together than runs can tell.
+    /// Whether known curves through a place lead from one label to another, in any order: the
+    /// curves are closer together than runs can resolve.
     fn leads(&self, point: &Point, labels: &[Label; 2]) -> bool {
         let near = 4e-8 * self.scale;
         let pieces = self.near(&[*point, *point]).into_iter();
@@ -298,8 +303,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         reached.contains(&&labels[1])
     }
 
-    /// Drops the changes for which no margin was found where they were seen, but to which curves
-    /// lead that were found elsewhere, and what is listed twice.
+    /// Drops duplicates, and changes that curves found elsewhere explain, though no margin was
+    /// found where the change was seen.
     pub fn drop_explained(&mut self) {
         for open in std::mem::take(&mut self.network.unresolved) {
             let explained = match &open {
@@ -432,7 +437,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
-    /// Removes curves. All later ones have other indices then.
+    /// Removes curves. The indices of all later curves change.
     pub fn remove_curves(&mut self, curves: &[usize]) {
         let mut removed = curves.to_vec();
         removed.sort_unstable();
@@ -462,7 +467,7 @@ mod tests {
     use super::*;
     use crate::curve::VertexKind;
 
-    /// A boundary that stalled at a vertex ends at the one with which that is joined.
+    /// A boundary that stalled at a vertex ends at the vertex with which its own is joined.
     #[test]
     fn a_stalled_vertex_may_be_joined_with_another_one() {
         let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };

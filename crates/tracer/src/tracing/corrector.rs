@@ -1,4 +1,8 @@
 //! From a guess to a zero of a margin, of two margins, or of the gradient of a margin.
+//!
+//! Gradients are differences. A gradient takes four runs and is good to 5e-10; a run with three
+//! derivatives would take five times as long as a run, and cubics are checked by values of the
+//! margin, to 1e-10.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -63,8 +67,8 @@ pub(crate) fn correct<F: Family>(
 }
 
 /// The zero of a margin on the edge of a window through `guess`, along which `axis` is constant; at
-/// most `reach` away. Where the boundary all but runs along the edge, it is the place of the edge
-/// next to a zero beside `guess`.
+/// most `reach` away. Where the boundary nearly runs along the edge, the result is the place of the
+/// edge next to a zero beside `guess`.
 pub(crate) fn correct_on_edge<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,

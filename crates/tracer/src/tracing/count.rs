@@ -1,4 +1,9 @@
 //! How many boundaries and regions a window has, roughly, before any is traced.
+//!
+//! A trace takes some milliseconds for each curve, and a window may have more curves than anybody
+//! can wait for: the number of curves of a collision grows as its stiffness. Labels alone are
+//! counted, at places that are divided where regions are narrow. On an even grid each place of a
+//! crowded corner would have another label, which shows neither regions nor curves.
 
 mod grid;
 
@@ -41,10 +46,10 @@ impl<F: Family> Tracer<'_, F> {
     /// `enough` curves.
     ///
     /// Labels are computed at 32 by 32 places. A place that is in no square of four places with one
-    /// label is divided into four, and so on, so that regions are told apart where they are narrow,
-    /// and only there. This ends where no such place is left; after 4096 places, where their number
-    /// does not even double and those left would have to hide four curves each to make enough; and
-    /// at the latest after ten divisions, or before there are 2¹⁹ places.
+    /// label is divided into four, and so on, so that narrow regions are resolved, at no cost
+    /// elsewhere. This ends when no such place is left. It ends after 4096 places if the number of
+    /// such places does not even double, and each of the rest would have to hide four curves to
+    /// make enough. It ends at the latest after ten divisions, or before there are 2¹⁹ places.
     ///
     /// A region counts if it has a square of four places, and so does a label that has no such
     /// region. Two regions that share more than one side of a place have a curve between them. The

@@ -1,11 +1,11 @@
 //! The part of a network that lies in a window.
 //!
-//! A trace follows boundaries a little beyond the window. What meets there a hair beyond an edge,
-//! or on it, is then found like anything else. Here its curves are cut at the edges.
+//! A trace follows boundaries a little beyond the window. Vertices just beyond an edge, or on it,
+//! are then found like any other. Here curves are cut at the edges.
 //!
 //! A curve is divided where it crosses an edge, and at its nodes on an edge. A part belongs to the
-//! window if it leads farther inside than places can be told apart, so that curves along an edge do
-//! not.
+//! window if it leads inside by more than the distance at which places are distinguished, so that
+//! curves along an edge do not belong to it.
 
 use crate::cubic::Cubic;
 use crate::cubic::bernstein::each_root;
@@ -245,7 +245,7 @@ impl<F: Family> Cutter<'_, '_, F> {
         let (cubic, theta) = path.piece(cut.place);
         let (mut guess, tangent) = (cubic.at(theta), cubic.tangent(theta));
         guess[cut.axis] = cut.edge;
-        // Where no run tells better, the place is that of the cubic.
+        // Where no run gives a better place, the place of the cubic is used.
         let solved = self.solve(curve, &guess, &tangent, &cubic, cut.axis).ok().flatten();
         let Node { point, tangent } = solved.unwrap_or(Node { point: guess, tangent });
         let vertex = self.edge_vertex(&point, std::slice::from_ref(&curve.margin));

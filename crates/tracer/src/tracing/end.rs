@@ -35,7 +35,7 @@ pub struct Special<Margin> {
 }
 
 impl<Margin> Special<Margin> {
-    /// Whether this place is much more accurate than that of a known vertex.
+    /// Whether this place is much more accurate than the place of a known vertex.
     pub(crate) fn improves(&self, stop: &Stop) -> bool {
         self.solved && self.uncertainty < 0.2 * stop.uncertainty
     }

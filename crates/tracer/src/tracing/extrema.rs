@@ -114,12 +114,12 @@ impl Bracket {
     }
 }
 
-/// The zero of a value in a bracket, with its place along the curve counted in pieces.
+/// The zero of a value in a bracket, and its place along the curve, in pieces.
 ///
-/// The value is taken at nodes on the boundary itself; it is solved for by the Illinois method
-/// (Dowell and Jarratt, 1971), until the place does not move and `is_small` of the value. `None` if
-/// the value does not vanish but jumps, for instance the tangent at the end of a curve where it is
-/// not known, or if the boundary cannot be followed.
+/// The value is taken at nodes on the boundary itself; the Illinois method (Dowell and Jarratt,
+/// 1971) solves for it, until the place does not move and the value `is_small`. `None` if the value
+/// does not vanish but jumps, for instance a tangent at the end of a curve that is not known, or if
+/// the boundary cannot be followed.
 pub(crate) fn solve<F: Family>(
     runs: &Runs<'_, F>,
     curve: &Curve<F::Label, F::Margin>,

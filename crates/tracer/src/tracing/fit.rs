@@ -1,8 +1,10 @@
 //! Curves as close to their boundary as the options ask.
 //!
-//! The steps along a curve do not end at its vertices, and a margin may be singular at a vertex, or
-//! exist up to it only, so that its gradient does not tell the direction of the curve there. So
-//! cubics are compared with the boundary, and divided where they are too far from it.
+//! The steps along a curve do not end at its vertices. At a vertex a margin may be singular, or
+//! exist up to it only; its gradient then does not give the direction of the curve. So an accepted
+//! cubic is compared with the boundary at a second place, and divided if it is too far from it
+//! there. Refusing the step instead would not help: next to a singular vertex, a branch would end
+//! beside it in ever shorter steps, which locate the vertex worse than a long step does.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
@@ -81,7 +83,8 @@ pub(crate) enum Target {
 
 impl<F: Family> Fit<'_, '_, F> {
     /// The nodes behind `last` up to `target`. Cubics between them are as close to the boundary as
-    /// the options ask, or as shorter ones can be. `gradient` is that of the margin at `last`.
+    /// the options ask, or as shorter ones can be. `gradient` is the gradient of the margin at
+    /// `last`.
     pub fn nodes(&self, last: &Node, gradient: &Point, target: Target) -> Traced<Vec<Node>, F> {
         let (mut last, mut gradient) = (*last, *gradient);
         let mut nodes = Vec::new();
@@ -114,7 +117,7 @@ impl<F: Family> Fit<'_, '_, F> {
     }
 
     /// The node at a vertex behind `last`. Its tangent is normal to the gradient if there is one,
-    /// else that of the circle through `last`.
+    /// else tangent to the circle through `last`.
     pub fn end(&self, last: &Node, vertex: &Point) -> Traced<Node, F> {
         Ok(self.ends(last, vertex)?[0])
     }
@@ -124,7 +127,7 @@ impl<F: Family> Fit<'_, '_, F> {
     fn ends(&self, last: &Node, vertex: &Point) -> Traced<Vec<Node>, F> {
         let chord = vertex - last.point;
         let end = |tangent| Node { point: *vertex, tangent };
-        // A chord comparable to the tolerance has no meaningful direction.
+        // A chord as short as the tolerance has no meaningful direction.
         if chord.norm() < SHORTEST * self.runs.scale {
             return Ok(vec![end(last.tangent)]);
         }
@@ -183,8 +186,8 @@ impl<F: Family> Fit<'_, '_, F> {
         let slope = self.runs.gradient(&found.point, self.margin, &tangent, self.radius)?;
         let Some(slope) = slope else { return Ok(None) };
         let node = Node { point: found.point, tangent: normal(&slope, &tangent) };
-        // Where the vertex lies beside the boundary, or the boundary turns just before it, every
-        // cubic up to it is as far off.
+        // If the vertex lies beside the boundary, or the boundary turns just before it, every cubic
+        // up to it has the same error.
         let better = self.error(&Cubic::between(last, &node), gradient)? <= 0.5 * error
             && self.best(&node, &slope, target)?.1 <= 0.5 * error;
         Ok(better.then_some((node, slope)))

@@ -27,7 +27,7 @@ pub struct Followed<Label, Margin> {
     pub ends: Option<[End<Margin>; 2]>,
     /// The values of each monitor at the nodes.
     pub values: Vec<Vec<f64>>,
-    /// Where monitors vanish, those of the first monitor first, each in the order of the nodes.
+    /// Where monitors vanish, ordered by monitor and then by node.
     pub zeros: Vec<MonitorZero>,
 }
 
@@ -54,9 +54,9 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// vanishes where the label changes.
 ///
 /// Zeros of monitors are found where a monitor has different signs at successive nodes, which are
-/// at most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself, along
-/// which their error is that of the monitor divided by its slope, or 1e-10 of the window's shorter
-/// extent.
+/// at most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself. Their
+/// error along it is the error of the monitor divided by its slope, or 1e-10 of the window's
+/// shorter extent.
 ///
 /// ```
 /// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};

@@ -10,8 +10,8 @@ use crate::window::Point;
 
 /// Segments from a place of the grid to places nearby where a margin has the other sign.
 ///
-/// A search starts for each margin that is closer to zero than at the neighbours. Where it leads
-/// across no boundary that `is_known`, others of the same margin may be as near, and searches start
+/// A search starts for each margin that is closer to zero than at the neighbours. If it crosses no
+/// boundary that `is_known`, more boundaries of the same margin may be as near; then searches start
 /// from the places around too. `grid` holds columns of `rows` places each; `cell` is the distance
 /// between neighbours.
 pub(crate) fn beside<F: Family>(

@@ -62,7 +62,7 @@ pub enum Unresolved<Label> {
         /// The index of the vertex.
         vertex: usize,
     },
-    /// A curve between two vertices that are one place, as far as can be told. It is left out.
+    /// A curve between two vertices that cannot be distinguished. The curve is left out.
     #[error("a curve at ({}, {}) has no length", point.x, point.y)]
     NoLength {
         /// The place.

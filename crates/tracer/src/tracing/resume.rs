@@ -10,8 +10,8 @@ use crate::tracing::tracer::Tracer;
 use crate::window::{Point, Window};
 
 impl<'f, F: Family> Tracer<'f, F> {
-    /// The state from which [`Self::resume`] goes on. While the tracer looks again, it is the one
-    /// before.
+    /// The state from which [`Self::resume`] goes on. While the tracer looks again, the result is
+    /// the state before that.
     pub(crate) fn state(&self) -> StateOf<F> {
         self.before_look.as_deref().cloned().unwrap_or_else(|| State {
             network: self.uncut(),
@@ -56,7 +56,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.begin_between(brackets);
     }
 
-    /// Whether the tracer looks again where a verification told.
+    /// Whether the tracer looks again where a verification disagreed.
     pub(crate) fn looks_again(&self) -> bool {
         self.before_look.is_some()
     }

@@ -1,4 +1,4 @@
-//! The runs of a family: they are counted, and their errors get the point.
+//! The runs of a family: they are counted, and their errors name the point.
 
 use std::cell::Cell;
 
@@ -73,7 +73,7 @@ impl<'a, F: Family> Runs<'a, F> {
         Self { free: Cell::new(free), prescribed: Cell::new(prescribed), ..self }
     }
 
-    /// The same runs, counted for themselves.
+    /// The same runs, with counts of their own.
     pub(crate) fn aside(&self) -> Self {
         let &Self { family, window, options, scale, .. } = self;
         Self { family, window, options, scale, free: Cell::new(0), prescribed: Cell::new(0) }
@@ -131,7 +131,7 @@ impl<'a, F: Family> Runs<'a, F> {
     /// 5e-10. The scale is estimated by `radius`, the radius of curvature of the boundary.
     ///
     /// Beside a place where a margin is singular, for instance beside the boundary of a graze that
-    /// comes before, it varies on a much shorter scale across its boundary. This shows by a bend
+    /// comes before, it varies on a much shorter scale across its boundary. The slope then changes
     /// within the differences, and they are made shorter.
     ///
     /// If the margin exists on one side only, the difference is one-sided, of second order. If it
@@ -165,8 +165,8 @@ impl<'a, F: Family> Runs<'a, F> {
     }
 
     /// Whether the slope of a margin across `direction` changes within the shortest differences, as
-    /// beside the boundary of a graze that comes before. Its value and slope tell nothing of where
-    /// it vanishes then.
+    /// beside the boundary of a graze that comes before. The value and the slope of the margin then
+    /// do not show where it vanishes.
     pub(crate) fn is_singular(
         &self,
         point: &Point,

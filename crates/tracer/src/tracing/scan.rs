@@ -20,12 +20,12 @@ impl<F: Family> Tracer<'_, F> {
     /// labels at the ends.
     pub(crate) fn scan(&mut self, segment: [Point; 2], labels: [F::Label; 2]) -> Traced<(), F> {
         /// The number of changes that are followed on one segment. Other edges of the grid find the
-        /// curves of further ones.
+        /// curves of further changes.
         const CHANGES: usize = 64;
         let [a, b] = segment;
         let length = (b - a).norm();
-        // The gap behind a curve in which runs may not tell is a small part of a short segment, but
-        // there not less than twice the error of the curve.
+        // In a gap behind a curve runs may not resolve the curve. On a short segment the gap is a
+        // small part of it, but at least twice the error of the curve.
         let short = (2e-3 * length).max(2.0 * self.runs.options.interpolation);
         let gap = (2e-9 * self.runs.scale).min(short) / length;
         let [mut label, last] = labels;
@@ -58,7 +58,7 @@ impl<F: Family> Tracer<'_, F> {
             let change = if !doubtful {
                 bisect(&self.runs, &segment, [place, end], [first, second])?
             } else if let Some(passage) = &unexplained {
-                // The curve has other labels on its sides than those here: a vertex on it was
+                // The labels on the sides of the curve are not the labels here: a vertex on it was
                 // missed.
                 let after = (end + 2.0 * gap).min(1.0);
                 let labels = [second, self.runs.label(&a.lerp(&b, after))?];
@@ -75,7 +75,7 @@ impl<F: Family> Tracer<'_, F> {
             match identify(&self.runs, &places, &change.labels)? {
                 Some(seed) => self.seed(&seed)?,
                 // The labels beside a curve are not its own if another curve is closer than runs
-                // can tell apart.
+                // can resolve.
                 None if doubtful => {}
                 None => {
                     let labels = change.labels.clone();
@@ -89,9 +89,9 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Traces the curve through a seed in both directions, unless it is known. A curve that leads
-    /// along an edge of the window, no farther inside than places can be told apart, is not in the
-    /// window.
+    /// Traces the curve through a seed in both directions, unless it is known. A curve along an
+    /// edge of the window, no farther inside than the distance at which places are distinguished,
+    /// is not in the window.
     fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
         if self.builder.covers(&seed.point, &seed.labels) || !self.runs.window.contains(&seed.point)
         {
@@ -129,7 +129,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Whether all these nodes lie on one edge of the window, as far as places can be told apart.
+    /// Whether all these nodes lie on one edge of the window, up to the distance at which places
+    /// are distinguished.
     fn is_along_edge(&self, nodes: &[Node]) -> bool {
         let Window { low, high } = self.runs.window;
         let near = SHORTEST * self.runs.scale;
@@ -140,8 +141,9 @@ impl<F: Family> Tracer<'_, F> {
         })
     }
 
-    /// Removes the suspects whose labels are wrong. On them two vertices lay between two nodes, and
-    /// only one of the two was found later. The circles around this vertex find the right curves.
+    /// Removes the suspects whose labels are wrong. Two vertices lay between two nodes of such a
+    /// suspect, and only one of the two was found later. The circles around this vertex find the
+    /// right curves.
     fn check_suspects(&mut self) -> Traced<(), F> {
         let mut wrong = Vec::new();
         for index in std::mem::take(&mut self.builder.suspects) {
@@ -220,7 +222,7 @@ impl<F: Family> Tracer<'_, F> {
         statistics.nodes += nodes.len();
         statistics.rejected += rejected;
         if is_past {
-            // What lies behind the vertex is found from elsewhere, or is in doubt.
+            // The boundaries behind the vertex are found from elsewhere, or are in doubt.
             let (between, labels) = ([seed.point; 2], seed.labels.clone());
             self.builder.network.unresolved.push(Unresolved::Change { between, labels });
             return Ok(None);

@@ -8,7 +8,7 @@ use crate::window::Point;
 /// Places between `here` and `there` just behind the zeros of margins of `here` at which the label
 /// changes.
 ///
-/// `before` is the place on the other side of `here`, as far away as `there`. It tells whether a
+/// `before` is the place on the other side of `here`, as far away as `there`. It shows whether a
 /// margin comes near zero on the way. Zeros on `known` curves, at these places from 0 to 1, are
 /// left out.
 pub(crate) fn between<F: Family>(
@@ -52,15 +52,15 @@ impl<F: Family> Way<'_, F> {
     }
 
     /// The point behind the zero of the margin, which has `value` at 0 and `before` at −1, where
-    /// the label is another one than ahead of the zero. `None` if the margin does not come to zero,
-    /// or if nothing changes there.
+    /// the label differs from the label before the zero. `None` if the margin does not come to
+    /// zero, or if nothing changes there.
     fn vanishes(&self, value: f64, before: Option<f64>) -> Traced<Option<Point>, F> {
-        /// A margin of which so large a part is left behind the way, if it goes on straight, does
-        /// not vanish on it.
+        /// A margin does not vanish on the way if more than this part of it is left at the end of
+        /// the way by linear extrapolation.
         const LEFT: f64 = 0.5;
-        /// Where the slope is taken if there is no place before.
+        /// The place at which the slope is taken if there is no place before.
         const NEAR: f64 = 1e-3;
-        /// The farthest behind the zero that the label is computed.
+        /// The greatest distance behind the zero at which the label is computed.
         const FARTHEST: f64 = 1e-3;
         if value == 0.0 {
             return Ok(None);

@@ -21,8 +21,8 @@ pub enum SpecialPoint {
     GrazeAtEnd,
     /// Two events happen at one instant: both at the end of the run, or two that swap their order.
     SimultaneousEvents,
-    /// Two boundaries touch: one begins on the other with its tangent, as that of a graze behind a
-    /// graze does, with a square root.
+    /// Two boundaries touch: one begins on the other with its tangent. The boundary of a graze
+    /// behind another graze does so, with a square root.
     Tangency,
     /// None of these: a boundary ends, or turns into another one.
     Other,
@@ -60,9 +60,8 @@ fn special_points<Label>(
     vertices: &[Vertex<Margin>],
     window: &Window,
 ) -> Vec<(usize, SpecialPoint)> {
-    /// The distance, as a part of the window's shorter extent, within which two ends are those of
-    /// one cusp: margins are cubic in the distance there, so that each branch has an end of its
-    /// own.
+    /// Two ends within this distance, as a fraction of the window's shorter extent, belong to one
+    /// cusp. Margins are cubic in the distance there, so that each branch has an end of its own.
     const CUSP: f64 = 3e-6;
     let mut arrivals: Vec<Vec<Arrival>> = vertices.iter().map(|_| Vec::new()).collect();
     for curve in curves {
@@ -130,7 +129,7 @@ fn name(arrivals: &[&Arrival<'_>]) -> SpecialPoint {
     }
 }
 
-/// Whether the same guards fired before. From which place each guard is watched does not matter.
+/// Whether the same guards fired before. The places from which each guard is watched do not matter.
 pub(super) fn same_phase(one: &Margin, other: &Margin) -> bool {
     let [one, other] = [one, other].map(|margin| margin.exits.iter().map(|exit| exit.guard));
     one.eq(other)

@@ -1,4 +1,8 @@
 //! The stages of a search, in steps between which it can stop and go on.
+//!
+//! The number of the next step, with the network and the errors of its vertices, is all that is
+//! needed to go on, from memory or from a file. The runs of the grid are computed again. So is a
+//! verification that was cancelled, and a second look starts again from the network before it.
 
 use crate::executor::Executor;
 use crate::family::Family;
@@ -35,7 +39,7 @@ impl<F: Family> Tracer<'_, F> {
             if std::mem::discriminant(&self.stage) != stage {
                 watch.report(Progress::Advance { steps: left });
                 watch.report(Progress::Begin { steps: ahead });
-                // The places around islands are those of the grid.
+                // Islands are searched around places of the grid.
                 if !matches!(self.stage, Stage::Islands { .. }) {
                     self.sampled.clear();
                 }
@@ -195,8 +199,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Searches between two neighbouring places of the stage, along the line from the place before
-    /// them to that after them, for regions that none of these places lies in.
+    /// Searches between two neighbouring places of the stage for regions in which no place lies.
+    /// The line leads from the place before the two to the place after them.
     fn search_slivers(
         &mut self,
         before: Option<usize>,

@@ -18,7 +18,8 @@ pub(crate) struct State<Label, Margin> {
     /// The number of vertices around which boundaries were searched for.
     pub probed: usize,
     pub stage: Stage,
-    /// Where the tracer has to look again, if it has explored the window and a verification told.
+    /// Where the tracer has to look again, if it has explored the window and a verification
+    /// disagreed.
     pub brackets: Option<Vec<[Point; 2]>>,
 }
 

@@ -1,7 +1,7 @@
 //! Ends of curves that begin on another one with its tangent.
 //!
-//! The last part of such a curve is closer to the other boundary than runs can tell apart, so that
-//! the branch ends beside the true vertex.
+//! The last part of such a curve is closer to the other boundary than runs can resolve, so that the
+//! branch ends beside the true vertex.
 
 use crate::curve::VertexKind;
 use crate::family::Family;

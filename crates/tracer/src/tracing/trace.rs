@@ -90,7 +90,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         network
     }
 
-    /// The network as it is traced, up to some way beyond the window.
+    /// The network before it is cut: it reaches some way beyond the window.
     pub(super) fn uncut(&self) -> NetworkOf<F> {
         let mut network = self.builder.network.clone();
         self.count_runs(&mut network);
@@ -104,9 +104,9 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// The places where the curves found so far are extremal in a coordinate. They are solved for
     /// on the boundaries; along them, the error is about 1e-9 of the radius of curvature.
     ///
-    /// The ends of curves are not extrema. A curve whose direction is that of an axis to 1e-6 has
-    /// no extrema. On both sides of an extremum, before the next one or the end, the coordinate
-    /// must change by more than ten times `options.interpolation`.
+    /// The ends of curves are not extrema. A curve that is parallel to an axis to 1e-6 has no
+    /// extrema. On both sides of an extremum, before the next one or the end, the coordinate must
+    /// change by more than ten times `options.interpolation`.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
@@ -114,8 +114,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         extrema(&self.runs, &self.network().curves)
     }
 
-    /// Scans a segment. It is first halved if the run in its middle is not what the runs at its
-    /// ends suggest.
+    /// Scans a segment. It is first halved if the run in its middle differs from what the runs at
+    /// its ends suggest.
     pub(super) fn divide(&mut self, a: &Sampled<F>, b: &Sampled<F>) -> Traced<(), F> {
         /// How often a segment is halved, at most.
         const DIVISIONS: u32 = 4;
@@ -200,7 +200,7 @@ impl<'f, F: Family> Tracer<'f, F> {
 
     /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
     /// these may meet at a large angle, which makes their crossing accurate. A vertex that turns
-    /// out to be another one is joined with it.
+    /// out to be the place of another vertex is joined with it.
     pub(super) fn polish(&mut self) -> Traced<(), F> {
         /// How many tolerances apart vertices at both ends of a curve count as two.
         const APART: f64 = 1e3;
@@ -226,8 +226,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// The place of an inaccurate vertex, solved for with the margins of all curves that end there.
-    /// Where two of them touch, the place that is found may be farther away than its error says,
-    /// and is left out, unless a curve misses the vertex by as much.
+    /// Where two of these curves touch, the new place may be farther away than its error says. It
+    /// is then left out, unless a curve misses the vertex by as much.
     fn better_place(&self, index: usize, stop: &Stop) -> Traced<Option<Special<F::Margin>>, F> {
         let arrivals = self.builder.arrivals(index);
         let missed = arrivals.iter().map(|(node, _)| missed_by(node, &stop.point));
@@ -297,8 +297,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 }
 
-/// Whether a run between two others is what they suggest: it has the same label, and margins near
-/// the mean of theirs.
+/// Whether a run between two others is as they suggest: it has the same label, and margins near the
+/// mean of their margins.
 fn is_expected<L: Eq, M: PartialEq>(
     a: &FreeRun<L, M>,
     middle: &FreeRun<L, M>,
@@ -318,8 +318,8 @@ fn is_expected<L: Eq, M: PartialEq>(
         })
 }
 
-/// How far beside a curve, whose last node before its end is `node`, the vertex lies at which it
-/// ends, if the curve would have to turn by more than it does in a step.
+/// The distance of a vertex from a curve that ends there, if the curve would have to turn by more
+/// than a step allows. `node` is its last node before the end.
 fn missed_by(node: &Node, vertex: &Point) -> f64 {
     let chord = vertex - node.point;
     let beside = node.tangent.perp(&chord).abs();

@@ -17,15 +17,14 @@ use crate::window::Window;
 /// [`Self::look_between`] then finds the curve.
 ///
 /// Boundaries are followed a little [beyond](crate::TraceOptions::beyond) the window and cut at its
-/// edges, so that places where they meet just outside are vertices like others. The family is
-/// evaluated up to a hundredth of the window's extent, and as far as boundaries are followed,
-/// outside the window. The distance of nodes from their boundary is at most `options.tolerance`, or
-/// what the noise of margins allows; that of the cubics between them is at most
-/// `options.interpolation`.
+/// edges, so that vertices just outside are found like others. The family is evaluated up to a
+/// hundredth of the window's extent, and as far as boundaries are followed, outside the window. The
+/// distance of nodes from their boundary is at most `options.tolerance`, or what the noise of
+/// margins allows; the distance of the cubics between them is at most `options.interpolation`.
 pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
-    /// The window that was asked for. That of the runs and of the builder is larger.
+    /// The window of the caller. The window of the runs and of the builder is larger.
     pub(super) window: Window,
     /// The number of vertices around which boundaries were searched for.
     pub(super) probed: usize,

@@ -118,7 +118,8 @@ impl Motion for NormalMotion {
 
 /// Calls `f` with the normal motion for the damping `a`, above 0 and below 2¹⁴.
 ///
-/// Each thread keeps the last one. What it has expanded already changes no result.
+/// Each thread keeps the last one: a map or an atlas has one damping, and a trajectory costs as
+/// much as a collision. What it has expanded already changes no result.
 pub fn with<R>(a: f64, f: impl FnOnce(&Viscoelastic) -> R) -> R {
     thread_local! {
         static LAST: Cell<Option<Box<Viscoelastic>>> = const { Cell::new(None) };

@@ -1,4 +1,4 @@
-//! The two systems whose runs make courses: the paper's contact and that of any law.
+//! The two systems whose runs make courses: the paper's contact and the contact of any law.
 
 use stickslip_contact::general::{self, CREST, GeneralContact, Mode, REVERSAL};
 use stickslip_contact::phase::{END, Phase};
@@ -24,7 +24,7 @@ pub trait Followed<const N: usize>: Copy {
     /// How fast time grows with s.
     fn clock_rate(&self, y: &State<N>) -> f64;
 
-    /// The contact in the state `y`; its time is that of the clock.
+    /// The contact in the state `y`; its time is the time of the clock.
     fn snapshot(&self, mode: Self::Mode, y: &State<N>) -> Snapshot;
 
     /// What holds in a mode.

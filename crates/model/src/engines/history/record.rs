@@ -29,11 +29,11 @@ struct Part<M, const N: usize> {
     since: f64,
     begin: State<N>,
     end: State<N>,
-    /// Its steps among those of the record; none if the part is too short for one.
+    /// Its steps among the steps of the record; an empty range if the part is too short for one.
     steps: Range<usize>,
 }
 
-/// What can be asked of a [`Record`] of any system.
+/// What a [`Record`] of any system provides.
 pub trait Course {
     /// Duration of the contact.
     fn duration(&self) -> f64;

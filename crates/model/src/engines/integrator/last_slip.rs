@@ -41,7 +41,7 @@ pub(crate) fn time_left(
 
 /// A stick phase just before the end of a contact.
 pub(crate) struct LastStick {
-    /// Its side: that of the slip which turned round.
+    /// Its side: the side of the slip that turned round.
     pub side: Side,
     /// The time left and the spring's elongation at its start and at its end.
     pub ends: [(f64, f64); 2],
@@ -51,9 +51,9 @@ pub(crate) struct LastStick {
 /// `end`, where the body moves away from the side of the slip; `None` if it moves to that side.
 ///
 /// A slip on side s that has turned round, s w < 0, sticks once more at u₀ = (2/3)κ|w|, where its
-/// limit u³/κ falls as fast as w. That place may be so close to u = 0 that the integrator does not
-/// tell them apart. Before the end v is −1 and the spring is too slow to change w: it reaches its
-/// limit on the other side at u₀/2.
+/// limit u³/κ falls as fast as w. That place may be too close to u = 0 for the integrator to
+/// resolve it. Before the end v is −1 and the spring is too slow to change w: it reaches its limit
+/// on the other side at u₀/2.
 pub(crate) fn stick(system: &Regularized, slip: Phase, end: &State<STATE>) -> Option<LastStick> {
     let Phase { regime, side, .. } = slip;
     let (contact, w) = (system.contact(), system.velocity(end));

@@ -14,8 +14,8 @@ const BEYOND_NOISE: f64 = 32.0;
 const ROW: usize = 9;
 /// The order of the differences that are taken of these points.
 const DIFFERENCES: usize = 6;
-/// Differences that shrink by more than this factor with a quarter of the spacing are those of a
-/// smooth function. They would shrink by 4096.
+/// Differences that shrink by more than this factor with a quarter of the spacing belong to a
+/// smooth function, for which the factor is 4096.
 const SHRINKS: f64 = 64.0;
 /// The factor by which such a difference is larger than the noise: the square root of C(12, 6), the
 /// sum of its squared weights.
@@ -131,9 +131,9 @@ pub(super) struct Accuracy {
     pub(super) state: (f64, f64),
     /// The noise of the guard's values beyond that, if it was measured.
     pub(super) noise: f64,
-    /// The same, relative to the values around it. Noise is as large as the smaller of both says:
-    /// values near a pole are noisy in proportion, and values that are differences of larger ones
-    /// are equally noisy everywhere.
+    /// The same, relative to the values around it. The smaller of both gives the noise: values near
+    /// a pole are noisy in proportion, and differences of larger values are equally noisy
+    /// everywhere.
     noisy_part: f64,
 }
 

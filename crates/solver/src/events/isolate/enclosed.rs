@@ -3,7 +3,7 @@
 //! A part of the step whose bounds exclude zero has no crossing. A part whose slopes have one sign
 //! is monotone, and one whose second derivatives have one sign has at most one extremum: the signs
 //! at the ends and at the extremum decide. All other parts are halved. What remains at rounding is
-//! a jump, a pole, or a touch that cannot be told from a crossing pair.
+//! a jump, a pole, or a touch that may be a pair of crossings.
 
 use crate::error::RunError;
 use crate::events::isolate::{
@@ -22,7 +22,7 @@ pub(crate) trait Enclosed {
     /// The value by a step of the method to `theta`, as a number and with its rounding.
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError>;
     /// Makes bounds between two step fractions tighter, by a step of the method into their middle.
-    /// The result is `None` if that does not help, and tells whether only rounding is left.
+    /// The result is `None` if that does not help; otherwise it says whether only rounding is left.
     fn refine(&mut self, low: f64, high: f64) -> Result<Option<bool>, RunError>;
     /// Returns to the bounds on the whole step.
     fn widen(&mut self);
@@ -73,7 +73,7 @@ pub(crate) fn first_enclosed_crossing(
 }
 
 /// The last sign that an enclosed curve shows on a step at whose end it is zero, if it starts with
-/// `value`. The result is 0 if bounds do not tell.
+/// `value`. The result is 0 if bounds do not decide.
 pub(crate) fn last_enclosed_sign(
     curve: &mut dyn Enclosed,
     value: f64,
@@ -131,7 +131,7 @@ impl Search<'_> {
                 return Some((high, sign));
             }
             if zero_order < 2 && slope.is_bounded() && bend.sign() != 0.0 && width < 1e-6 {
-                // The slope starts from 0 too. If it were only small, a shorter step would tell.
+                // The slope starts from 0 too. If it were only small, a shorter step would show it.
                 let start = self.over(first, first).slope;
                 if (start.lower() + start.upper()).abs() <= 1e-3 * start.width() {
                     return Some((high, bend.sign()));
@@ -146,7 +146,7 @@ impl Search<'_> {
     }
 
     /// The same, from bounds of the values on parts that grow from the narrowest one on. They also
-    /// tell the sign of a guard whose slope is zero or unbounded where it starts.
+    /// give the sign of a guard whose slope is zero or unbounded where it starts.
     fn leave_zero_by_values(&mut self, first: f64) -> Option<(f64, f64)> {
         let (mut known, mut away) = (None, self.task.resolution);
         while first + away < 1.0 {

@@ -27,7 +27,7 @@ pub(crate) fn root(mut curve: impl FnMut(f64) -> f64, low: (f64, f64), high: (f6
     theta.clamp(low.0, high.0)
 }
 
-/// The places, in widths, that are looked at beside one where there is no value.
+/// The places, in widths, that are tried beside a place without a value.
 const BESIDE: [f64; 8] = [1.0, -1.0, 16.0, -16.0, 256.0, -256.0, FARTHEST, -FARTHEST];
 const FARTHEST: f64 = 4096.0;
 

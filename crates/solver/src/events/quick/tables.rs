@@ -63,8 +63,8 @@ const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
 /// Weights that give the size of the last term of Newton's form on [0, 1].
 ///
 /// Newton's form goes through all nodes but `skip`, and node `last` is added last. Its last term is
-/// the highest coefficient, times a polynomial. The weights are those of this coefficient, times
-/// the largest absolute value of the polynomial on [0, 1].
+/// the highest coefficient, times a polynomial. The result is the weights of this coefficient,
+/// times the largest absolute value of the polynomial on [0, 1].
 const fn last_term_weights<const K: usize>(
     nodes: &[f64; K],
     skip: Option<usize>,

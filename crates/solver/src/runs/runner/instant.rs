@@ -1,10 +1,10 @@
 //! The events of one instant, in order.
 //!
-//! Guards that cross zero at one place, as far as rounding tells, are of one instant. All of them
-//! act, each once: those of higher priority first, and then in the order in which they are listed.
-//! A guard that has crossed zero does so whatever the others did before, if the mode then active
-//! has this guard; otherwise it is reported as preempted. A guard that bounds the domain of its
-//! mode ([`Direction::Below`]) is asked again.
+//! Guards that cross zero at one place, up to rounding, belong to one instant. All of them act,
+//! each once: guards of higher priority first, and then in the order of the list. A guard that has
+//! crossed zero acts whatever the others did before, if the mode then active has this guard;
+//! otherwise it is reported as preempted. A guard that bounds the domain of its mode
+//! ([`Direction::Below`]) is evaluated again.
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
@@ -50,7 +50,7 @@ impl<S: System> Instant<S> {
         Self { pending: List::of(0, None), acted: List::of(0, None), chain: Vec::new() }
     }
 
-    /// Remembers the last events of a chain, of which `left` more are allowed.
+    /// Remembers the last events of a chain; `left` more events are allowed.
     fn remember(&mut self, left: usize, event: (S::Mode, usize)) {
         if left < 2 * LONGEST_CYCLE {
             self.chain.push(event);
@@ -242,9 +242,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
     }
 
-    /// The sign with which a guard of the active mode is one of the mode `from`, 0 if it is another
-    /// one. They are the same if their values are, or the negatives, where the step of the event
-    /// starts, where it ends, and in the state as it is.
+    /// 1 or −1 if a guard of the active mode is a guard of the mode `from`, with this sign; 0 if it
+    /// is another guard. They are the same if their values are, or are opposite, where the step of
+    /// the event starts, where it ends, and in the present state.
     fn sense(&mut self, event: &Event<S>, from: S::Mode, guard: usize) -> f64 {
         let (system, s, to) = (self.system, self.clock.s, self.phase.mode);
         let direction = match self.phase.guards.parts().get(guard) {
@@ -313,7 +313,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 continue;
             }
             // A guard that has crossed stands on its zero, whatever its rounding is, while nothing
-            // changes its value. That of another mode does not.
+            // changes its value. A guard of another mode does not.
             let left = match crossed.map(|mode| self.left(event, act, mode, guard)) {
                 Some(None) => continue,
                 left => left.flatten().unwrap_or(0.0),
@@ -327,7 +327,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     }
 
     /// The value that is left where a guard has crossed zero in `mode`, 0 if it has jumped. The
-    /// result is `None` if it is not the guard of the active mode.
+    /// result is `None` if the active mode does not have this guard.
     fn left(&mut self, event: &Event<S>, act: &Act<S>, mode: S::Mode, guard: usize) -> Option<f64> {
         let sense = self.sense(event, mode, guard);
         let left = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);

@@ -1,4 +1,8 @@
 //! Edges that cross where there is no vertex.
+//!
+//! Beside a common vertex, two edges may be closer together than the tolerance, and interpolation
+//! leaves open which one is above. A crossing there is reported only if the area between it and the
+//! vertex is wider than the tolerance.
 
 use crate::cubic::Cubic;
 use crate::regions::arrangement::piece::{Edge, Piece};

@@ -27,10 +27,10 @@ impl Faces {
     /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
     /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
     /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
-    /// only if the gap on the other side of the piece is wide too. A side that no such gap shows,
-    /// because its edge is too short, has the face of its neighbour at a vertex on the frame that
-    /// edges leave in different directions. `frame` are the edges of the window, which have the
-    /// outside on their right.
+    /// only if the gap on the other side of the piece is wide too. An edge may be too short for
+    /// such a gap. Its side then has the face of its neighbour at a vertex on the frame that edges
+    /// leave in different directions. `frame` are the edges of the window, which have the outside
+    /// on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;

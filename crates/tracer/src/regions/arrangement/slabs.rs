@@ -72,7 +72,7 @@ impl Slabs {
     }
 
     /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than
-    /// `reach` from every piece. Also true if there are no two such pieces.
+    /// `reach` from every piece. Also true if one of the two pieces does not exist.
     pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
         let pieces = self.of(slab);
         gap + 1 >= pieces.len() || {
@@ -95,8 +95,7 @@ impl Slabs {
         right.saturating_sub(1).min(self.count().saturating_sub(1))
     }
 
-    /// The number of pieces of the slab below `point`. Its x may also be that of a wall of the
-    /// slab.
+    /// The number of pieces of the slab below `point`. The point may also be on a wall of the slab.
     #[inline]
     pub(crate) fn below(&self, slab: usize, point: &Point) -> usize {
         self.of(slab).partition_point(|&piece| self.pieces[piece].y_at(point.x) < point.y)

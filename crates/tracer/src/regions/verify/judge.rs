@@ -1,4 +1,4 @@
-//! The comparison of the labels of runs with those of regions, and its statistics.
+//! The comparison of the labels of runs and of regions, and its statistics.
 
 use crate::regions::region::Side;
 use crate::regions::subdivision::Subdivision;
@@ -8,7 +8,7 @@ use crate::regions::verify::report::{
 };
 use crate::window::Point;
 
-/// Compares the labels of runs with those of regions, one after the other.
+/// Compares the labels of runs and of regions, one after the other.
 pub struct Judge<'a, Label, Margin, Error> {
     plane: &'a Subdivision<Label, Margin>,
     /// The labels of the regions.
@@ -25,7 +25,7 @@ pub struct Judge<'a, Label, Margin, Error> {
     beside: Vec<[bool; 2]>,
     /// The number of random points of the window.
     random: u64,
-    /// The number of those that have another label than their region.
+    /// The number of random points with another label than their region.
     wrong_random: u64,
 }
 

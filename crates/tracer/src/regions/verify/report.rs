@@ -36,7 +36,7 @@ pub enum Origin {
     },
 }
 
-/// A point at which the label is not that of its region.
+/// A point at which the label differs from the label of its region.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mismatch<Label> {
@@ -104,7 +104,7 @@ pub struct Verification<Label, Error> {
 
 impl<Label, Error> Verification<Label, Error> {
     /// Pairs of points in one region, the first with the label of the region and the second with
-    /// another one. Between them passes a boundary, which
+    /// another label. Between them passes a boundary, which
     /// [`Tracer::look_between`](crate::Tracer::look_between) can find.
     #[must_use]
     pub fn brackets(&self) -> Vec<[Point; 2]> {
@@ -114,8 +114,8 @@ impl<Label, Error> Verification<Label, Error> {
         self.mismatches.iter().filter_map(bracket).collect()
     }
 
-    /// The points whose label nobody knows: the run failed, or the point is in no region. Points
-    /// within the error of a curve are not among them, since their region is open for a reason.
+    /// The points without a known label: the run failed, or the point is in no region. Points
+    /// within the error of a curve are left out, since the curve leaves their region open.
     pub fn failed(&self) -> impl Iterator<Item = &Unverified<Error>> {
         let on_curve = |reason: &Reason<Error>| {
             matches!(reason, Reason::Location(Location::OnBoundary { .. }))

@@ -40,10 +40,10 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// The index of the nearest known vertex to which the branch leads beyond a place where even
-    /// the shortest step fails. Where boundaries touch, a strip between them is narrower than runs
-    /// can tell before it ends.
+    /// the shortest step fails. Where boundaries touch, the strip between them is narrower than
+    /// runs can resolve before it ends.
     pub(crate) fn touched(&self, from: &FootholdOf<F>) -> Traced<Option<usize>, F> {
-        /// The farthest such vertex, as a fraction of the window's shorter extent.
+        /// The greatest distance of such a vertex, as a fraction of the window's shorter extent.
         const FARTHEST: f64 = 1e-3;
         let distance = |index: usize| (self.stops[index].point - from.node.point).norm();
         let mut nearest: Option<usize> = None;
@@ -90,8 +90,8 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// Whether the branch keeps its labels on `arc`, which ends at a vertex. They are computed at
-    /// three places and close to the vertex, but no closer than `apart`, where runs do not tell the
-    /// boundaries apart that meet there.
+    /// three places and close to the vertex, but no closer than `apart`: within that distance runs
+    /// do not distinguish the boundaries that meet there.
     pub(crate) fn is_clear(
         &self,
         from: &FootholdOf<F>,

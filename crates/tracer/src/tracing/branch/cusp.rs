@@ -1,4 +1,9 @@
 //! Cusps, where the extremum that a branch follows merges with another one on its zero.
+//!
+//! Neither extremum exists beyond a cusp. On one branch the margin ends with the power 3/2 of the
+//! distance, on the other branch it is singular: each branch alone locates the cusp to 1e-7 of the
+//! window or worse. What makes the extrema merge is smooth, and a family may know it
+//! ([`Family::cusps`]). Then the cusp is solved for.
 
 use crate::cubic::Cubic;
 use crate::curve::VertexKind;
@@ -9,8 +14,8 @@ use crate::tracing::end::{SHORTEST, Special};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
-/// The length of a cubic into a cusp, as a fraction of the window's shorter extent, up to which
-/// nothing else is looked for on it: the wedge of a cusp may be too thin for labels there.
+/// A cubic into a cusp is not searched for anything else if it is shorter than this fraction of the
+/// window's shorter extent: the wedge of a cusp may be too thin for labels there.
 const TIP: f64 = 1e-5;
 
 /// The cusps ahead of `from`, within `reach` or close by, for which the family knows what vanishes
@@ -34,8 +39,8 @@ pub(crate) fn ahead<F: Family>(
 }
 
 /// The cusp into which a branch leads beyond `from`, where even the shortest step fails; `None` if
-/// there is none. The wedge before it is thinner than runs can tell. In a window with unequal sides
-/// it is so far from the cusp.
+/// there is none. The wedge before the cusp is thinner than runs can resolve, in a window with
+/// unequal sides even far from the cusp.
 pub(crate) fn beyond<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -75,8 +80,8 @@ fn end<F: Family>(track: &Track<'_, '_, F>, point: Point, uncertainty: f64) -> S
 /// The end of a branch in a cusp ahead of `from`; `None` if the cusp is too far away.
 ///
 /// Towards a cusp a boundary bends ever more, and its margin ceases to exist. So the cusp ends the
-/// branch only where the cubic that leads into it is as close to the boundary as the options ask,
-/// or shorter than [`TIP`] and no farther from it than places that count as one.
+/// branch only if the cubic that leads into it is as close to the boundary as the options ask, or
+/// if it is shorter than [`TIP`] and no farther from the boundary than places that count as one.
 pub(crate) fn reached<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,

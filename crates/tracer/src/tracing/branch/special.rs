@@ -1,4 +1,8 @@
 //! The special points that steps run into, where a branch must end.
+//!
+//! Margins that cross are searched for before margins that touch, which take many more runs. A
+//! branch that stalls without a known cause ends at the vertex to which its margin leads, if one is
+//! known within a thousandth of the window, or at the window's edge if the edge is close ahead.
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
@@ -12,21 +16,20 @@ use crate::tracing::seed::{bisect, identify};
 use crate::window::Point;
 
 /// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
-/// tried as touches. The values of margins tell the place of a touch only to half the digits.
+/// tried as touches. The values of margins determine the place of a touch only to half the digits.
 pub(crate) const TANGENTIAL: f64 = 1e-9;
 /// The largest error of a place at which boundaries touch, as a fraction of the window's shorter
-/// extent: it is where their gradients are parallel, and a gradient beside a place where its margin
-/// ceases to exist is one-sided. A third curve that arrives there tells better.
+/// extent. The place is where the gradients are parallel, and a gradient is one-sided where its
+/// margin ceases to exist nearby. A third curve that ends there gives a better place.
 const TOUCH: f64 = 1e-8;
-/// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are none: the
-/// two margins are almost multiples of each other.
+/// A crossing with a larger uncertainty, as a fraction of the window's shorter extent, does not
+/// count: the two margins are almost multiples of each other.
 const VAGUE: f64 = 1e-5;
 
 /// What a failed step may have run into.
 #[derive(Clone, Copy)]
 pub(crate) struct Search {
-    /// Whether the gradient of the branch's margin may be what vanishes. Near a cusp that is known
-    /// it nearly does.
+    /// Whether the gradient of the branch's margin may vanish. Near a known cusp it nearly does.
     pub alone: bool,
     /// Whether boundaries may touch within the step. This takes many runs.
     pub touches: bool,
@@ -65,8 +68,8 @@ pub(crate) fn locate<F: Family>(
     Ok(None)
 }
 
-/// Whether the gradient of the branch's margin is all but zero at a place where differences over
-/// the length of a step say so. Over a short step, they may be differences of errors.
+/// Whether the gradient of the branch's margin is nearly zero at a place where differences over the
+/// length of a step say so. Over a short step these may be differences of errors.
 fn flattens<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -76,9 +79,9 @@ fn flattens<F: Family>(
     Ok(gradient.is_none_or(|gradient| gradient.norm() <= 0.1 * from.gradient.norm()))
 }
 
-/// The first place within a failed step where one of these margins vanishes together with that of
-/// the branch, and behind which the branch does not have its labels. Crossings come first: touches
-/// take many runs.
+/// The first place within a failed step where one of these margins vanishes together with the
+/// branch's margin, and behind which the branch does not have its labels. Crossings come first:
+/// touches take many runs.
 fn among<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -121,7 +124,7 @@ fn among<F: Family>(
     Ok(first(track, from, touches)?.map(|(point, off, margin)| special(point, off, margin)))
 }
 
-/// A place, its largest error, and the margin that vanishes there besides that of the branch.
+/// A place, its largest error, and the margin that vanishes there besides the branch's margin.
 type Met<Margin> = (Point, f64, Margin);
 
 /// The first of these places behind which the branch does not have its labels.
@@ -142,11 +145,12 @@ fn first<F: Family>(
 }
 
 /// The end of a branch on which even the shortest step fails: the place where a thin region begins
-/// beside it, or that within a thousandth of the window where its margin ceases to exist. If there
-/// is none, the result is `from`, unsolved.
+/// beside it, or the place within a thousandth of the window where its margin ceases to exist. If
+/// there is none, the result is `from`, unsolved.
 ///
-/// Two boundaries that come closer than the offset of the runs are one as far as these can tell. A
-/// branch with the labels beyond both ends where they part, and each goes on from there.
+/// Runs do not distinguish two boundaries that are closer than the offset of the runs. A branch
+/// that has the labels beyond both boundaries ends where they separate, and each boundary goes on
+/// from there.
 pub(crate) fn give_up<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -228,8 +232,8 @@ pub(crate) fn edge<F: Family>(
     }
 }
 
-/// The place between `from` and the end of the step where the boundary meets that of `margin`, and
-/// the largest error of this place. The boundaries cross or touch there.
+/// The place between `from` and the end of the step where the boundary meets the boundary of
+/// `margin`, and the largest error of this place. The boundaries cross or touch there.
 fn meet<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -245,7 +249,7 @@ fn meet<F: Family>(
         (Some(first), Some(second)) if (first < 0.0) != (second < 0.0) => {
             start.lerp(&end, first / (first - second))
         }
-        // A step to an edge of the window may end where the two meet.
+        // A step to an edge of the window may end where the two boundaries meet.
         (Some(_), Some(second)) if second.abs() <= runs.options.noise => end,
         (Some(_), None) => start,
         (None, Some(_)) => end,
@@ -261,8 +265,8 @@ fn meet<F: Family>(
     Ok((progress > -slack && progress < h + slack).then_some((point, off)))
 }
 
-/// Whether the branch has its labels up to `point` and not beyond it, as far as runs can tell:
-/// they do not tell boundaries apart that are closer to `point` than `apart`.
+/// Whether the branch has its labels up to `point` and not beyond it. Runs do not distinguish
+/// boundaries that are closer to `point` than `apart`.
 fn is_last<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,

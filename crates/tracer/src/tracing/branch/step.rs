@@ -27,7 +27,7 @@ pub(crate) enum Attempt<Label, Margin> {
     Turn(f64),
     /// The new cubic is too far from the boundary, by this distance.
     Rough(f64),
-    /// The labels on the sides are not those of the branch.
+    /// The labels on the sides are not the labels of the branch.
     Labels(Foothold<Label, Margin>),
 }
 
@@ -112,7 +112,7 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// Whether an accepted step is close to the boundary at the other place too at which errors
-    /// show. Where the margin does not exist, nothing tells otherwise.
+    /// show. Where the margin does not exist, the step counts as close.
     pub(crate) fn is_close(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
         let options = &self.runs.options;
         let most = SHOWN * options.interpolation * from.gradient.norm() + options.noise;

@@ -2,10 +2,12 @@
 //!
 //! Behind the graze of a guard, everything that depends on when it fires has a square root in the
 //! margin r of the graze. Another margin there is m₀ + α √r + β r + …, and its boundary begins on
-//! that of the graze where m₀ = 0, as a parabola. Next to this place the strip between the two
-//! boundaries is narrower than runs can tell. A branch along the one stalls there, either before
-//! the place, or beyond it, where the strip becomes as wide as the offset of the runs. But m₀ can
-//! be followed along the boundary of the graze, and its zero is simple.
+//! the boundary of the graze where m₀ = 0, as a parabola. The strip between the two boundaries is
+//! (m₀/α)² wide. Next to this place runs cannot resolve it. A branch along the graze with the
+//! labels of the far side runs past the place, and stalls where the strip becomes as wide as the
+//! offset of the runs. A branch with the labels of the strip stalls before the place. But m₀ can be
+//! followed along the boundary of the graze, by the polynomial in √r through the margin at four
+//! distances, and its zero is simple. Two distances must agree on it.
 
 use crate::curve::VertexKind;
 use crate::family::Family;
@@ -15,15 +17,18 @@ use crate::tracing::end::{SHORTEST, Special};
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
 
-/// The farthest along the boundary that the place is looked for, as a part of the window's shorter
+/// How far along the boundary the place is searched for, as a fraction of the window's shorter
 /// extent.
 const REACH: f64 = 0.1;
-/// The least distances from the boundary at which the margin is taken, as parts of the same. Of two
-/// of them the larger one has the larger error of the polynomial, the smaller one that of the runs.
+/// The least distances from the boundary at which the margin is taken, as fractions of the same
+/// extent. A larger distance has a larger error of the polynomial, a smaller distance a larger
+/// error of the runs.
 const NEAR: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-/// The largest difference between the places by two such distances, as a part of the same.
+/// The largest difference between the places that two such distances give, as a fraction of the
+/// same extent.
 const AGREEMENT: f64 = 1e-7;
-/// The distance beside the branch, as a part of the same, at which runs show what lies there.
+/// The distance beside the branch, as a fraction of the same extent, at which runs show what lies
+/// there.
 const ASIDE: f64 = 1e-5;
 
 /// A place where a boundary begins on another one with its tangent, and whether it lies ahead.
@@ -46,7 +51,7 @@ pub(crate) fn branch_begins<F: Family>(
     nearest(|consider| behind_others(track, from, consider))
 }
 
-/// The nearest place of those that are considered.
+/// The nearest of the places that are considered.
 fn nearest<F: Family>(
     of: impl FnOnce(&mut Consider<'_, F>) -> Traced<(), F>,
 ) -> Traced<Option<Tangency<F::Margin>>, F> {
@@ -69,8 +74,8 @@ fn nearest<F: Family>(
 /// What is done with a margin that may have a root.
 type Consider<'c, F> = dyn FnMut(&Root<'_, F>) -> Traced<(), F> + 'c;
 
-/// Considers that the branch is the boundary of a graze. Margins behind that exist on one side of
-/// it, and the one that stalls the branch vanishes at one of the distances at which its runs are.
+/// Considers that the branch is the boundary of a graze. Margins behind the graze exist on one side
+/// of it. The margin that stalls the branch vanishes at one of the distances of the runs.
 fn behind_branch<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -111,12 +116,12 @@ fn behind_branch<F: Family>(
     Ok(())
 }
 
-/// Whether a margin with these values, at distances of which each is a tenth of the one before, is
-/// all but zero at one of them, and changes with the root of the distance.
+/// Whether a margin with these values is nearly zero at one of the distances, and changes with the
+/// root of the distance. Each distance is a tenth of the one before.
 fn stalls_with_root(values: &[f64]) -> bool {
     let sizes = values.iter().map(|value| value.abs());
     let (least, most) = (sizes.clone().fold(f64::NAN, f64::min), sizes.fold(f64::NAN, f64::max));
-    // Such differences become √10 times as small, those of a smooth margin 10 times.
+    // With a root, differences become smaller by a factor of √10; those of a smooth margin, of 10.
     let is_root = |three: &[f64]| (three[0] - three[1]).abs() < 5.0 * (three[1] - three[2]).abs();
     least <= 0.1 * most && values.len() > 2 && values.windows(3).all(is_root)
 }
@@ -160,7 +165,7 @@ fn behind_others<F: Family>(
     Ok(())
 }
 
-/// A margin beside the boundary of a graze, in whose margin it has a square root.
+/// A margin beside the boundary of a graze. It has a square root in the margin of the graze.
 pub(crate) struct Root<'r, F: Family> {
     pub runs: &'r Runs<'r, F>,
     pub own: &'r F::Margin,
@@ -169,7 +174,7 @@ pub(crate) struct Root<'r, F: Family> {
     pub foot: Point,
     pub along: Point,
     pub gradient: Point,
-    /// 1 or −1: the side on which the margin exists, as the sign of that of the graze.
+    /// 1 or −1: the sign that the margin of the graze has on the side on which this margin exists.
     pub side: f64,
 }
 

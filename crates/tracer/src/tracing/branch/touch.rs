@@ -1,4 +1,9 @@
 //! Boundaries that touch: special points that neither labels nor crossings of margins show.
+//!
+//! Found are other margins that dip to zero between the last three nodes, and boundaries that meet
+//! tangentially. Two kinds of margins do not count. The events on both sides of a boundary may each
+//! have a margin that vanishes there: such twins do not touch. And the value and the slope of a
+//! margin do not show where it vanishes if its slope changes within the shortest differences.
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
@@ -62,8 +67,9 @@ fn value_beside<L, M: PartialEq>(foothold: &Foothold<L, M>, margin: &M) -> Optio
 /// The place where a margin that dips along the boundary touches zero, or first crosses it. `guess`
 /// is the length from the middle foothold.
 ///
-/// The margin is lowest where its gradient is parallel to that of the branch. The secant method
-/// solves for this, because values near a minimum tell its place only to half the digits.
+/// The margin is lowest where its gradient is parallel to the gradient of the branch. The secant
+/// method solves for this, because values near a minimum determine its place only to half the
+/// digits.
 fn dip<F: Family>(
     track: &Track<'_, '_, F>,
     places: [&FootholdOf<F>; 3],
@@ -131,11 +137,12 @@ struct Probe {
     slope: f64,
 }
 
-/// A boundary farther away than so many lengths of a step does not touch the branch within the
+/// A boundary that is more than this many step lengths away does not touch the branch within the
 /// step.
 const FAR: f64 = 10.0;
 
-/// After so many updates the angle between boundaries that touch is at most half of what it was.
+/// After this many updates the angle between boundaries that touch is at most half of the first
+/// angle.
 const UPDATES: usize = 5;
 
 /// The place along a branch where the gradients of its own and of another margin are parallel, by
@@ -263,7 +270,8 @@ fn is_twin<F: Family>(track: &Track<'_, '_, F>, margin: &F::Margin) -> Traced<bo
             return Ok(false);
         }
         let other = runs.gradient(&place, margin, &node.tangent, track.radius)?;
-        // Boundaries that touch ahead are farther apart than the zeros of margins are uncertain.
+        // Boundaries that touch ahead are farther apart here than the error of the zeros of
+        // margins.
         return Ok(other.is_none_or(|other| {
             let apart = (offset - value / other.dot(&normal)).abs();
             apart <= 0.5 * nearest

@@ -53,7 +53,7 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// The foothold at a place of the boundary, with free runs on both sides; `Err` if their labels
-    /// are not those of the branch.
+    /// are not the labels of the branch.
     ///
     /// If another boundary is closer than the offset of the free runs, smaller offsets are tried,
     /// down to the accuracy of the place.
@@ -115,7 +115,7 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// The margins in the free runs at both ends of a step, except the margin that is followed, in
-    /// order: those on whose zeros the label is sure to change, or the others.
+    /// order: either the margins on whose zeros the label is sure to change, or the others.
     pub fn rivals(
         &self,
         from: &FootholdOf<F>,

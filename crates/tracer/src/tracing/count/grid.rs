@@ -8,7 +8,7 @@ use crate::tracing::count::Count;
 /// The number of places along a side before any is divided.
 const COARSEST: usize = 32;
 
-/// A square of the window with one label, that of its middle.
+/// A square of the window. The label of its middle counts for the square.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// How often the places of the coarsest grid were divided.
@@ -64,7 +64,7 @@ impl Grid {
             .collect()
     }
 
-    /// The number of places whose label was asked for.
+    /// The number of places whose label was computed.
     pub fn places(&self) -> usize {
         self.squares.len()
     }
@@ -77,7 +77,7 @@ impl Grid {
         self.leaves.extend_from_slice(places);
     }
 
-    /// Those of the places of the finest grid that are in no square of four places with one label.
+    /// The places of the finest grid that are in no square of four places with one label.
     pub fn narrow(&mut self, places: &[Place]) -> Vec<Place> {
         let mut narrow = Vec::new();
         for place in places {

@@ -4,7 +4,8 @@
 //! In r = √a the states are analytic functions for every damping: also the end of contact, where
 //! U = √(a|V|), and what is counted back from it. On each interval of r they are polynomials
 //! through a few trajectories, which are computed with twice the digits when the interval is used
-//! for the first time. A new damping then takes the time of evaluating polynomials.
+//! for the first time. A new damping then takes the time of evaluating polynomials. The table is
+//! not a file, since nobody could check its numbers by reading.
 
 use std::sync::OnceLock;
 
@@ -306,7 +307,7 @@ impl Solved {
     /// The distance from `state`, the last one at a node before the end, to the end.
     ///
     /// With a weak damping Q vanishes at U = ±√(−βV/α): two zeros of Q that are close together. The
-    /// first of them is that of U − √(−βV/α), whose slope is nearly V. With a strong damping Q
+    /// first of them is the zero of U − √(−βV/α), whose slope is nearly V. With a strong damping Q
     /// decays, and Newton's steps approach its zero from the side on which they start. The last
     /// steps, with all digits, are for Q.
     fn until_end(&self, from: &State<DoubleDouble>) -> DoubleDouble {

@@ -60,7 +60,7 @@ impl Viscoelastic {
         Moment { half, root }
     }
 
-    /// Node `index` of those of both halves in the order of time.
+    /// Node `index` among the nodes of both halves in the order of time.
     fn node_in_time(&self, index: usize) -> Moment {
         let [first, last] = &self.halves;
         if index < first.inner {
@@ -99,7 +99,7 @@ impl Viscoelastic {
 
     /// A shorter bracket of the end of a slip phase, and a guess.
     ///
-    /// g falls through 0 once between `low` and `high`; its signs at the nodes between them tell in
+    /// g falls through 0 once between `low` and `high`; its signs at the nodes between them show in
     /// which piece.
     pub(super) fn around_meeting(
         &self,

@@ -80,8 +80,8 @@ pub fn coefficients<N: Number, const ORDERS: usize>(
 ) -> [[N; 4]; ORDERS] {
     let zero = N::new(0.0);
     let mut changes = [[zero; 4]; ORDERS];
-    // The coefficients of u, q, y = u² and p = y q. Those of y and p are sums of products, to which
-    // every product is added as soon as it is known.
+    // The coefficients of u, q, y = u² and p = y q. The coefficients of y and p are sums of
+    // products, to which every product is added as soon as it is known.
     let [mut u, mut q, mut y, mut p] = [[zero; ORDERS]; 4];
     (u[0], q[0], y[0]) = (place.u, place.q, place.u.times(place.u));
     p[0] = y[0].times(q[0]);
