@@ -61,6 +61,15 @@ class Compiled:
     def __reduce__(self) -> Any:
         raise TypeError("an address means nothing in another process: Compiled cannot be pickled")
 
+    def __copy__(self) -> "Compiled":
+        copy = object.__new__(type(self))
+        copy.__dict__.update(self.__dict__)
+        return copy
+
+    def __deepcopy__(self, memo: Any) -> "Compiled":
+        # The code and its parameters never change.
+        return self.__copy__()
+
     def __repr__(self) -> str:
         return f"Compiled({self._keeps!r})"
 

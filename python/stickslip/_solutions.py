@@ -1,5 +1,6 @@
 """What a run gives: points, events, and the state at any time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -7,11 +8,18 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _solution_pictures
+from stickslip._axes import Panels, svg
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
+from stickslip._libraries import library
 from stickslip._names import Named
+from stickslip._tabular import Columns as Table
+from stickslip._tabular import Tabular, flat
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
+
     from stickslip.formulas import FormulaSystem
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -60,9 +68,19 @@ class DenseOutput:
         inside = (times >= self.t_min) & (times <= self.t_max)
         return np.where(inside, self._names[self._modes[index]], "")[()]
 
+    def plot(
+        self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
+    ) -> "list[Axes]":
+        """Draws the state in time with matplotlib, coloured by mode; see `Solution.plot`."""
+        return _solution_pictures.dense(self, ax, components, line)
+
+    def __repr__(self) -> str:
+        size, steps = self._end[1].size, self._segments[0].size
+        return f"DenseOutput(t from {self.t_min} to {self.t_max}, {size} components, {steps} steps)"
+
 
 @dataclass(frozen=True)
-class Solution:
+class Solution(Tabular):
     """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
 
     #: Times, shape (k,): of the steps, or those of `t_eval`. A run that ends early ends with its
@@ -151,6 +169,60 @@ class Solution:
             )
         system, rerun = self._again
         return sensitivities_of(system, by, rerun)
+
+    def plot(
+        self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
+    ) -> "list[Axes]":
+        """Draws the state in time with matplotlib: coloured by mode, with its events.
+
+        ax: axes for each component, or one for all of them; without it, new ones. components: which
+        ones, the first eight unless given. line: properties of all lines. Without `dense_output`, a
+        run of formulas is repeated for the states between its steps, unless it is long. The result
+        is the axes, one for each component.
+        """
+        return _solution_pictures.solution(self, ax, components, line)
+
+    _dimension = "time"
+
+    @property
+    def _components(self) -> list[str]:
+        """The names of the components of the state."""
+        known = None if self.system is None else self.system.components[: len(self.y)]
+        return known or [f"y{place}" for place in range(len(self.y))]
+
+    def _columns(self) -> Table:
+        columns: Table = {"time": self.t, "mode": self.mode}
+        columns |= dict(zip(self._components, self.y, strict=True))
+        for name, values in self.variables.items():
+            columns |= flat(name, values)
+        return columns | {f"side_{name}": values for name, values in self.sides.items()}
+
+    def to_xarray(self) -> "Dataset":
+        """A `xarray.Dataset` with `state` over time and component, and the mode over time;
+        variables and sides, if there are any.
+
+        Raises ImportError if xarray is not installed.
+        """
+        xr = library("xarray", "xarray", "for to_xarray")
+        rest = {name: one for name, one in self._columns().items() if name not in self._components}
+        time = rest.pop("time")
+        variables = {name: ("time", one) for name, one in rest.items()}
+        coordinates = {"time": time, "component": self._components}
+        state = {"state": (("time", "component"), self.y.T)}
+        found: Dataset = xr.Dataset(state | variables, coordinates)
+        return found
+
+    def _smooth(self, most_calls: int) -> DenseOutput | None:
+        """The state at any time by another run, if this one needed no more calls."""
+        if self._again is None or self.nfev > most_calls:
+            return None
+        system, (values, given, end, settings) = self._again
+        found = system._native.run(values, given, end, settings, [])
+        return DenseOutput(found, np.array(system.modes), found["start_time"])
+
+    def _repr_svg_(self) -> str | None:
+        count = min(len(self.y), _solution_pictures.MOST_PANELS)
+        return svg(self.plot, count) if count else None
 
     @property
     def success(self) -> bool:

@@ -8,13 +8,15 @@ import graphlib
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from itertools import count, pairwise
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _solution_pictures
+from stickslip._axes import svg
 from stickslip._compiled import Compiled, Function, _count, _number
 from stickslip._family_atlases import (
     Cancelled,
@@ -35,6 +37,8 @@ from stickslip._family_atlases import (
 )
 from stickslip._family_options import TraceOptions, VerifyOptions, _json
 from stickslip._recorded import Recorded
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular, flat
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
@@ -42,6 +46,9 @@ from stickslip.collisions import Floats, _threads
 from stickslip._run_arguments import settings_of, span, state_at_start
 from stickslip.formulas import FormulaSystem
 from stickslip.hybrid import MOST_RECORDED, _arguments, _callee, _Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = [
     "FamilyAtlas",
@@ -77,8 +84,8 @@ class MonitorZero:
     point: tuple[float, float] | None
 
 
-@dataclass(frozen=True)
-class Followed:
+@dataclass(frozen=True, repr=False)
+class Followed(Tabular, Shown):
     """One boundary, from `HybridFamily.follow`."""
 
     margin: FamilyMargin
@@ -94,6 +101,23 @@ class Followed:
     #: The value of each monitor at each point, shape (monitors, n).
     values: Floats
     zeros: tuple[MonitorZero, ...] = field(default=())
+
+    _dimension = "point"
+
+    def _columns(self) -> Columns:
+        x, y = self.points.T
+        along = dict(zip(("tangent_x", "tangent_y"), self.tangents.T, strict=True))
+        return {"x": x, "y": y} | along | flat("monitor", self.values.T)
+
+    def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
+        """Draws the boundary with matplotlib, and the zeros of monitors.
+
+        ax: axes to draw in, or None for new ones. line: properties of the boundary.
+        """
+        return _solution_pictures.followed(self, ax, line)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
 
 
 class HybridFamily:
@@ -152,6 +176,8 @@ class HybridFamily:
         guard_scale: float | None = None,
         record: bool | None = None,
     ) -> None:
+        given = {name: value for name, value in locals().items() if name != "self"}
+        self._made = partial(HybridFamily, **given)
         if not isinstance(system, HybridSystem):
             hint = "; expected HybridFamily.of" if isinstance(system, FormulaSystem) else ""
             kind = type(system).__name__
@@ -302,6 +328,10 @@ class HybridFamily:
             raise ValueError(f"end = {end!r}; expected a number")
         settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
         family = cls.__new__(cls)
+        family._made = partial(
+            cls.of, system, x, y, parameters=parameters, end=end, name=name, rtol=rtol, atol=atol,
+            max_step=max_step, first_step=first_step, max_switches=max_switches,
+        )  # fmt: skip
         family.name, family.axes = _text(name, "name"), (x, y)
         axes = [known.index(x), known.index(y)]
         last = None if end is None else float(end)
@@ -313,7 +343,7 @@ class HybridFamily:
         return family
 
     def __reduce__(self) -> Any:
-        raise TypeError("a HybridFamily cannot be pickled; build it in each process")
+        return _made_again, (self._made,)
 
     def label(self, x: float, y: float) -> Itinerary:
         """What the run with the parameters x and y does."""
@@ -387,6 +417,10 @@ class HybridFamily:
 
     def __repr__(self) -> str:
         return f"HybridFamily({self.name!r}, axes: {self.axes}, guards: {self.guards})"
+
+
+def _made_again(make: "partial[HybridFamily]") -> HybridFamily:
+    return make()
 
 
 def trace_family(
