@@ -36,6 +36,7 @@ from stickslip._family_atlases import (
     _pairs,
 )
 from stickslip._family_options import TraceOptions, VerifyOptions, _json
+from stickslip._progress import check, reported
 from stickslip._recorded import Recorded
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular, flat
@@ -433,7 +434,7 @@ def trace_family(
     tolerance: float = 1e-9,
     rounds: int = 8,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     cancelled: Cancelled | None = None,
 ) -> FamilyAtlas:
     """Every curve in a window of the parameters on which the itinerary of the runs changes, and the
@@ -452,7 +453,7 @@ def trace_family(
     that a run has no value there, and fails.
 
     progress(done, steps): called now and then with the steps that are done, and those of all stages
-    that have begun; more may come. cancelled(): asked
+    that have begun; more may come. True shows a bar on stderr. cancelled(): asked
     between tasks; if it is true, the trace ends with what was found so far, and
     `FamilyAtlas.resume` goes on. Both are called on the thread that traces. Ctrl-C raises
     TraceInterrupted, a KeyboardInterrupt whose `atlas` can be resumed too.
@@ -460,10 +461,12 @@ def trace_family(
     if not isinstance(family, HybridFamily):
         raise TypeError(f"{type(family).__name__} is not a HybridFamily")
     window, text = _survey(x, y, options, verify, tolerance, rounds)
-    _check_calls(progress, cancelled)
-    calls = (progress, cancelled)
+    check(progress)
+    _check_calls(None, cancelled)
     family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
-    return _finish(family._native.trace(window, text, _threads(threads), calls))
+    with reported(progress, f"trace of {family.name}") as report:
+        found = family._native.trace(window, text, _threads(threads), (report, cancelled))
+    return _finish(found)
 
 
 def _survey(
