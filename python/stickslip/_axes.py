@@ -1,5 +1,7 @@
 """Axes of matplotlib, which is imported when a picture is drawn, and what all pictures share."""
 
+from __future__ import annotations
+
 import io
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -25,12 +27,12 @@ DIVERGING, GROWING = "PuOr", "cividis"
 _MOST_POINTS = 20_000
 
 
-def one(ax: "Axes | None") -> "Axes":
+def one(ax: Axes | None) -> Axes:
     """The axes, or new ones."""
     return panels(ax, 1)[0]
 
 
-def panels(ax: Panels, count: int) -> "list[Axes]":
+def panels(ax: Panels, count: int) -> list[Axes]:
     """So many axes: those that are given, one for all, or new ones one below the other."""
     if ax is None:
         figure = _new_figure(count)
@@ -71,7 +73,7 @@ def _size(count: int) -> tuple[float, float]:
     return 6.4, {1: 4.2, 2: 5.6}.get(count, 2.2 * count)
 
 
-def legend(ax: "Axes", **options: Any) -> None:
+def legend(ax: Axes, **options: Any) -> None:
     """A legend above the axes, where it hides nothing, if anything has a label."""
     handles, labels = ax.get_legend_handles_labels()
     known = dict(zip(labels, handles, strict=True))

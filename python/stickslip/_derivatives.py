@@ -1,5 +1,7 @@
 """Derivatives of runs, as the native module finds them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -52,7 +54,7 @@ class Sensitivities(Tabular, Shown):
     def _repr_html_(self) -> str:
         return html_table(self._columns(), "Derivatives of the events")
 
-    def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
         """Draws the derivatives of the times of the events with matplotlib.
 
         ax: axes to draw in, or None for new ones. line: properties of all lines.
@@ -60,7 +62,7 @@ class Sensitivities(Tabular, Shown):
         return _solution_pictures.sensitivities(self, ax, line)
 
 
-def sensitivities_of(system: "FormulaSystem", by: tuple[str, ...], rerun: Rerun) -> Sensitivities:
+def sensitivities_of(system: FormulaSystem, by: tuple[str, ...], rerun: Rerun) -> Sensitivities:
     """The derivatives of a run of a system."""
     parameters, components = list(system.parameters), system.components
     places = []

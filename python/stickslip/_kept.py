@@ -1,5 +1,7 @@
 """Results of the native module, kept as the texts that they give."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

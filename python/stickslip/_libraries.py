@@ -1,5 +1,7 @@
 """Libraries that are imported when they are used, and need not be installed otherwise."""
 
+from __future__ import annotations
+
 import importlib
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Numbers with names: variables that only events change, and signs of surfaces."""
 
+from __future__ import annotations
+
 from collections import namedtuple
 from collections.abc import Callable, Mapping, Sequence
 from keyword import iskeyword

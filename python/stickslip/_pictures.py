@@ -1,5 +1,7 @@
 """Pictures of collisions, impacts, fits, tables and time steps, in axes of matplotlib."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,7 +46,7 @@ _AXES = {
 _CELLS = 300
 
 
-def collision(found: "Collision", ax: Panels, line: dict[str, Any]) -> "list[Axes]":
+def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
     """Forces and velocities in time, with shaded phases."""
     forces, velocities = drawn = panels(ax, 2)
     course = found.history()
@@ -75,7 +77,7 @@ def collision(found: "Collision", ax: Panels, line: dict[str, Any]) -> "list[Axe
     return drawn
 
 
-def _shade(found: "Collision", ax: "Axes") -> None:
+def _shade(found: Collision, ax: Axes) -> None:
     ends = np.concatenate([[0.0], found.switches["time"], [found.contact_time]])
     kinds = np.array(list(found.itinerary))
     for kind, (name, colour) in _PHASES.items():
@@ -87,7 +89,7 @@ def _shade(found: "Collision", ax: "Axes") -> None:
             )
 
 
-def collisions(found: "Collisions", ax: "Axes | None", options: dict[str, Any]) -> "Axes":
+def collisions(found: Collisions, ax: Axes | None, options: dict[str, Any]) -> Axes:
     """The restitution over the parameter that varies, or as colours over two of them."""
     given = {name: getattr(found, name) for name in ("kappa", "psi", "damping")}
     varying = [name for name, values in given.items() if np.unique(values).size > 1]
@@ -125,13 +127,13 @@ def _around_zero(values: NDArray[Any]) -> dict[str, Any]:
 
 
 def counted(
-    ax: "Axes",
+    ax: Axes,
     x: NDArray[Any],
     y: NDArray[Any],
     count: NDArray[Any],
     options: dict[str, Any],
     label: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Points with the colours of numbers of switches, and a line through them if they are in order."""
     from matplotlib.ticker import MaxNLocator
 
@@ -145,7 +147,7 @@ def counted(
     return ax
 
 
-def impacts(found: "Impacts", ax: "Axes | None", options: dict[str, Any]) -> "Axes":
+def impacts(found: Impacts, ax: Axes | None, options: dict[str, Any]) -> Axes:
     """Both restitutions over the angle of incidence, or over the velocity if it is the same for all."""
     normal, tangential = found.normal_m_per_s.ravel(), found.tangential_m_per_s.ravel()
     angle = np.degrees(np.arctan2(tangential, normal))
@@ -165,12 +167,12 @@ def impacts(found: "Impacts", ax: "Axes | None", options: dict[str, Any]) -> "Ax
 
 
 def table(
-    found: "RestitutionTable | VelocityTable",
+    found: RestitutionTable | VelocityTable,
     x: tuple[str, tuple[float, float]],
     y: tuple[str, tuple[float, float]],
-    ax: "Axes | None",
+    ax: Axes | None,
     options: dict[str, Any],
-) -> "Axes":
+) -> Axes:
     """The restitution as colours over both axes of a table, with the boundaries of its regions."""
     ax = one(ax)
     across, up = (_between(*ends) for _, ends in (x, y))
@@ -194,7 +196,7 @@ def _between(low: float, high: float) -> NDArray[np.float64]:
     return low + (high - low) * parts
 
 
-def gaining(found: "GainingLines", ax: "Axes | None", line: dict[str, Any]) -> "Axes":
+def gaining(found: GainingLines, ax: Axes | None, line: dict[str, Any]) -> Axes:
     """The lines, with ticks on the side where energy is gained."""
     from matplotlib.patheffects import withTickedStroke
 
@@ -216,7 +218,7 @@ def gaining(found: "GainingLines", ax: "Axes | None", line: dict[str, Any]) -> "
     return ax
 
 
-def time_steps(found: "TimeSteps", ax: "Axes | None", line: dict[str, Any]) -> "Axes":
+def time_steps(found: TimeSteps, ax: Axes | None, line: dict[str, Any]) -> Axes:
     """The median and the largest errors over the step."""
     ax = one(ax)
     step = 1.0 / found.steps_per_contact
@@ -235,7 +237,7 @@ def time_steps(found: "TimeSteps", ax: "Axes | None", line: dict[str, Any]) -> "
     return ax
 
 
-def fit(found: "Fit", ax: Panels, options: dict[str, Any]) -> "list[Axes]":
+def fit(found: Fit, ax: Panels, options: dict[str, Any]) -> list[Axes]:
     """Data and fit over the angle of incidence, a panel for each quantity."""
     rows = found.data["residuals"]
     quantities = list(dict.fromkeys(row["quantity"] for row in rows))

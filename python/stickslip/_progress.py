@@ -1,5 +1,7 @@
 """Progress of long calls: reported to a callable, or shown on stderr."""
 
+from __future__ import annotations
+
 import importlib
 import sys
 import time

@@ -1,5 +1,7 @@
 """Systems of Python's functions that are recorded as formulas, run, and compared."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial

@@ -1,5 +1,7 @@
 """Results in a few lines of text."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import fields
 from html import escape

@@ -1,5 +1,7 @@
 """Pictures of runs: states in time, coloured by mode, with events; derivatives; boundaries."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -30,8 +32,8 @@ _MOST_LINES = 200
 
 
 def solution(
-    found: "Solution", ax: Panels, components: Sequence[int] | None, line: dict[str, Any]
-) -> "list[Axes]":
+    found: Solution, ax: Panels, components: Sequence[int] | None, line: dict[str, Any]
+) -> list[Axes]:
     """The components of the state in time, a panel for each."""
     drawn, chosen = _panels(ax, components, len(found.y))
     _lines(drawn, chosen, found._components, _line(found), line)
@@ -53,8 +55,8 @@ def solution(
 
 
 def dense(
-    found: "DenseOutput", ax: Panels, components: Sequence[int] | None, line: dict[str, Any]
-) -> "list[Axes]":
+    found: DenseOutput, ax: Panels, components: Sequence[int] | None, line: dict[str, Any]
+) -> list[Axes]:
     """The components of the state in time, a panel for each."""
     times = _times(found)
     states = found(times)
@@ -64,7 +66,7 @@ def dense(
     return _finish(drawn)
 
 
-def sensitivities(found: "Sensitivities", ax: "Axes | None", line: dict[str, Any]) -> "Axes":
+def sensitivities(found: Sensitivities, ax: Axes | None, line: dict[str, Any]) -> Axes:
     """The derivatives of the times of events."""
     ax = one(ax)
     events = found.event != ""
@@ -83,7 +85,7 @@ def sensitivities(found: "Sensitivities", ax: "Axes | None", line: dict[str, Any
     return ax
 
 
-def followed(found: "Followed", ax: "Axes | None", line: dict[str, Any]) -> "Axes":
+def followed(found: Followed, ax: Axes | None, line: dict[str, Any]) -> Axes:
     """The boundary, and where monitors vanish on it."""
     ax = one(ax)
     label = f"{found.margin.guard} ({found.margin.place})"
@@ -101,7 +103,7 @@ def followed(found: "Followed", ax: "Axes | None", line: dict[str, Any]) -> "Axe
 
 def _panels(
     ax: Panels, components: Sequence[int] | None, count: int
-) -> "tuple[list[Axes], list[int]]":
+) -> tuple[list[Axes], list[int]]:
     chosen = list(range(min(count, MOST_PANELS)) if components is None else components)
     for place in chosen:
         if not 0 <= place < count:
@@ -112,7 +114,7 @@ def _panels(
 
 
 def _lines(
-    drawn: "list[Axes]", chosen: list[int], names: list[str], of: _Line, line: dict[str, Any]
+    drawn: list[Axes], chosen: list[int], names: list[str], of: _Line, line: dict[str, Any]
 ) -> None:
     """The lines, a colour for each mode; and a dash for each component, if they share axes."""
     time, states, modes = of
@@ -132,14 +134,14 @@ def _lines(
         axes.set_ylabel("state" if together else names[place])
 
 
-def _finish(drawn: "list[Axes]") -> "list[Axes]":
+def _finish(drawn: list[Axes]) -> list[Axes]:
     drawn[-1].set_xlabel("time $t$")
     for axes in dict.fromkeys(drawn):
         legend(axes)
     return drawn
 
 
-def _line(found: "Solution") -> _Line:
+def _line(found: Solution) -> _Line:
     """The states at many times, both of an event among them, and a gap between these."""
     curve = found.sol or found._smooth(_CHEAP)
     times, states, modes = found.t, found.y, found.mode
@@ -161,7 +163,7 @@ def _line(found: "Solution") -> _Line:
     )
 
 
-def _times(curve: "DenseOutput") -> NDArray[np.float64]:
+def _times(curve: DenseOutput) -> NDArray[np.float64]:
     """The same number of times in each step of a run."""
     starts, sizes, _ = curve._segments
     inside = starts[:, None] + sizes[:, None] * np.linspace(0.0, 1.0, _POINTS)

@@ -1,5 +1,7 @@
 """What a run gives: points, events, and the state at any time."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -9,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native, _solution_pictures
+from stickslip._arrays import real
 from stickslip._axes import Panels, svg
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._libraries import library
@@ -50,7 +53,7 @@ class DenseOutput:
 
     def __call__(self, t: ArrayLike) -> Floats:
         """The state, shape (n,) at a number and (n, k) at k times."""
-        times = np.asarray(t, dtype=np.float64)
+        times = real("t", t)
         if times.ndim > 1:
             raise ValueError(f"t has {times.ndim} dimensions; expected a number or a list")
         flat = np.ascontiguousarray(times).reshape(-1)
@@ -60,7 +63,7 @@ class DenseOutput:
 
     def mode(self, t: ArrayLike) -> Any:
         """The mode at each time, or "" outside the run."""
-        times = np.asarray(t, dtype=np.float64)
+        times = real("t", t)
         starts, sizes, _ = self._segments
         sign = -1.0 if sizes.size and sizes[0] < 0.0 else 1.0
         index = np.searchsorted(sign * starts, sign * times, side="right") - 1
@@ -70,7 +73,7 @@ class DenseOutput:
 
     def plot(
         self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
-    ) -> "list[Axes]":
+    ) -> list[Axes]:
         """Draws the state in time with matplotlib, coloured by mode; see `Solution.plot`."""
         return _solution_pictures.dense(self, ax, components, line)
 
@@ -147,7 +150,7 @@ class Solution(Tabular):
     _again: Any = field(default=None, repr=False, compare=False)
 
     @property
-    def system(self) -> "FormulaSystem | None":
+    def system(self) -> FormulaSystem | None:
         """The formulas that have run: those of a text, or those of recorded functions."""
         return None if self._again is None else self._again[0]
 
@@ -172,7 +175,7 @@ class Solution(Tabular):
 
     def plot(
         self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
-    ) -> "list[Axes]":
+    ) -> list[Axes]:
         """Draws the state in time with matplotlib: coloured by mode, with its events.
 
         ax: axes for each component, or one for all of them; without it, new ones. components: which
@@ -197,7 +200,7 @@ class Solution(Tabular):
             columns |= flat(name, values)
         return columns | {f"side_{name}": values for name, values in self.sides.items()}
 
-    def to_xarray(self) -> "Dataset":
+    def to_xarray(self) -> Dataset:
         """A `xarray.Dataset` with `state` over time and component, and the mode over time;
         variables and sides, if there are any.
 
@@ -257,12 +260,12 @@ def _event_columns(width: int, dimension: int) -> list[Any]:
 
 
 @cache
-def _event_type(width: int, dimension: int) -> "np.dtype[np.void]":
+def _event_type(width: int, dimension: int) -> np.dtype[np.void]:
     return np.dtype(_event_columns(width, dimension))
 
 
 @cache
-def _place_types(width: int) -> tuple["np.dtype[np.void]", ...]:
+def _place_types(width: int) -> tuple[np.dtype[np.void], ...]:
     """The types of touches, of poles and guards that were preempted, and of rests."""
     text = f"U{width}"
     place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
@@ -332,7 +335,7 @@ def solution_of(
     guards: str,
     variables: dict[str, NDArray[np.float64]] | None = None,
     sides: dict[str, NDArray[np.int8]] | None = None,
-    again: "tuple[FormulaSystem, Rerun] | None" = None,
+    again: tuple[FormulaSystem, Rerun] | None = None,
 ) -> Solution:
     """The solution that the native module has found, as columns."""
     modes = np.array(names[0])

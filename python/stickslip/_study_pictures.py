@@ -1,5 +1,7 @@
 """Pictures of the tables of studies: one column over another one, a line for each case."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +28,7 @@ _USUAL = {
 _USUAL_OF_SYSTEMS = {"convergence_tolerances": ("tolerance", "state_error", ("method",))}
 
 
-def usual(table: "Table") -> tuple[str, str, tuple[str, ...]] | None:
+def usual(table: Table) -> tuple[str, str, tuple[str, ...]] | None:
     """What is drawn of a table unless it is said; None if that is not known."""
     for choices in (_USUAL, _USUAL_OF_SYSTEMS):
         found = choices.get(table.name)
@@ -36,11 +38,11 @@ def usual(table: "Table") -> tuple[str, str, tuple[str, ...]] | None:
 
 
 def table(
-    found: "Table",
-    ax: "Axes | None",
+    found: Table,
+    ax: Axes | None,
     choice: tuple[str | None, str | None, Sequence[str] | None],
     line: dict[str, Any],
-) -> "Axes":
+) -> Axes:
     """One column over another one."""
     x, y, by = _chosen(found, choice)
     columns = found.columns
@@ -71,7 +73,7 @@ def _above_zero(values: Any) -> Any:
 
 
 def _chosen(
-    found: "Table", choice: tuple[str | None, str | None, Sequence[str] | None]
+    found: Table, choice: tuple[str | None, str | None, Sequence[str] | None]
 ) -> tuple[str, str, Sequence[str]]:
     """What is drawn: what is given, and else what is usual."""
     x, y, by = choice
@@ -97,7 +99,7 @@ def _label(by: Sequence[str], key: tuple[Any, ...]) -> str | None:
     return ", ".join(parts) or None
 
 
-def _axis(found: "Table", name: str) -> str:
+def _axis(found: Table, name: str) -> str:
     """The name of a column and its meaning, in lines that fit beside an axis."""
     words, lines = f"{name}: {found.meanings[name]}".split(" "), [""]
     for word in words:

@@ -1,5 +1,7 @@
 """Results as tables of other libraries, which are imported when they are used."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -37,7 +39,7 @@ class Tabular:
         """
         return library("pandas", "pandas", "for to_pandas").DataFrame(self._columns())
 
-    def to_xarray(self) -> "Dataset":
+    def to_xarray(self) -> Dataset:
         """A `xarray.Dataset` with the columns, their meanings and their units.
 
         Raises ImportError if xarray is not installed.

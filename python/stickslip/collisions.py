@@ -1,5 +1,7 @@
 """Collisions in scaled parameters: one, or arrays of them."""
 
+from __future__ import annotations
+
 import json
 import os
 import operator
@@ -12,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _laws, _native, _pictures
-from stickslip._arrays import numbers
+from stickslip._arrays import numbers, real
 from stickslip._axes import Panels, svg
 from stickslip._laws import Law
 from stickslip._libraries import library
@@ -224,7 +226,7 @@ class Collision(Tabular):
         copy: dict[str, Any] = json.loads(self._native.json())
         return copy
 
-    def plot(self, ax: Panels = None, **line: Any) -> "list[Axes]":
+    def plot(self, ax: Panels = None, **line: Any) -> list[Axes]:
         """Draws forces and velocities in time with matplotlib, and shades the phases.
 
         ax: two axes, or one for both; without it, new ones. line: properties of the lines. The
@@ -357,7 +359,7 @@ class Collisions(Tabular):
         names = (*_NUMBERS, "reversals", "switch_count", "itinerary")
         return {name: np.ravel(getattr(self, name)) for name in names}
 
-    def to_xarray(self) -> "Dataset":
+    def to_xarray(self) -> Dataset:
         """A `xarray.Dataset` with the shape of the collisions, without their switches.
 
         An axis along which only one parameter varies has its name; others are dim_0, dim_1 and so
@@ -393,7 +395,7 @@ class Collisions(Tabular):
         """
         write_parquet(self.to_arrow(), path)
 
-    def plot(self, ax: "Axes | None" = None, **points: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **points: Any) -> Axes:
         """Draws eps_t with matplotlib over the parameter that varies, or as colours over two.
 
         ax: axes to draw in, or None for new ones. points: properties of points, or of the map of a
@@ -443,8 +445,7 @@ def psi_of_ratio(ratio: ArrayLike, mu: ArrayLike = 0.4, alpha: ArrayLike = 2 / 7
     >>> round(float(psi_of_ratio(0.7)), 12)
     0.5
     """
-    ratio, mu, alpha = (np.asarray(one, dtype=np.float64) for one in (ratio, mu, alpha))
-    return ratio * alpha / mu
+    return real("ratio", ratio) * real("alpha", alpha) / real("mu", mu)
 
 
 def collide(

@@ -4,6 +4,8 @@
 every curve in a window of the parameters on which the sequence of events of its runs changes.
 """
 
+from __future__ import annotations
+
 import graphlib
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -16,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native, _solution_pictures
+from stickslip._arrays import real
 from stickslip._axes import svg
 from stickslip._compiled import Compiled, Function, _count, _number
 from stickslip._family_atlases import (
@@ -110,7 +113,7 @@ class Followed(Tabular, Shown):
         along = dict(zip(("tangent_x", "tangent_y"), self.tangents.T, strict=True))
         return {"x": x, "y": y} | along | flat("monitor", self.values.T)
 
-    def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
         """Draws the boundary with matplotlib, and the zeros of monitors.
 
         ax: axes to draw in, or None for new ones. line: properties of the boundary.
@@ -298,7 +301,7 @@ class HybridFamily:
         max_step: float = np.inf,
         first_step: float | None = None,
         max_switches: int = 10_000_000,
-    ) -> "HybridFamily":
+    ) -> HybridFamily:
         """The family of a system of formulas over two of its parameters, by their names.
 
         parameters: the values of others. end: where all runs end, instead of the system's own end.
@@ -390,7 +393,7 @@ class HybridFamily:
         the boundary are solved for; NaN says that there is no value.
         """
         window = (_interval(x, "x"), _interval(y, "y"))
-        places = np.asarray(between, dtype=np.float64)
+        places = real("between", between)
         if places.shape != (2, 2) or not np.isfinite(places).all():
             raise ValueError(f"between = {between!r}; expected two points (x, y)")
         functions = list(monitors)
@@ -420,7 +423,7 @@ class HybridFamily:
         return f"HybridFamily({self.name!r}, axes: {self.axes}, guards: {self.guards})"
 
 
-def _made_again(make: "partial[HybridFamily]") -> HybridFamily:
+def _made_again(make: partial[HybridFamily]) -> HybridFamily:
     return make()
 
 

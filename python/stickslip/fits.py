@@ -1,5 +1,7 @@
 """Fits of contact laws to measured impacts."""
 
+from __future__ import annotations
+
 import json
 import os
 from collections.abc import Iterable, Mapping
@@ -10,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _laws, _native, _pictures
+from stickslip._arrays import numbers
 from stickslip._axes import Panels
 from stickslip._kept import Kept
 from stickslip._laws import Law
@@ -75,7 +78,7 @@ class Fit(Tabular):
             columns[f"root_mean_square_{quantity}"] = np.array(squares)
         return columns
 
-    def plot(self, ax: Panels = None, **points: Any) -> "list[Axes]":
+    def plot(self, ax: Panels = None, **points: Any) -> list[Axes]:
         """Draws data and fit over the angle of incidence with matplotlib.
 
         ax: axes for each quantity of the data, or one for all of them; without it, new ones.
@@ -154,7 +157,7 @@ def fit(
 
 
 def _column(name: str, values: ArrayLike) -> np.ndarray[Any, np.dtype[np.float64]]:
-    column = np.array(values, dtype=np.float64)
+    column = numbers(name, values)
     if column.ndim != 1:
         raise ValueError(f"{name} has {column.ndim} dimensions; expected 1")
     return column

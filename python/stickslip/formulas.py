@@ -4,6 +4,8 @@
 repository.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from functools import cached_property
 from os import PathLike
@@ -38,7 +40,7 @@ class FormulaSystem:
         self._native = _native.FormulaSystem(text)
 
     @classmethod
-    def _of(cls, native: _native.FormulaSystem) -> "FormulaSystem":
+    def _of(cls, native: _native.FormulaSystem) -> FormulaSystem:
         system = cls.__new__(cls)
         system._native = native
         return system

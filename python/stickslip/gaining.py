@@ -1,5 +1,7 @@
 """Where a contact law gives back more tangential energy than it took: the lines |eps_t| = 1."""
 
+from __future__ import annotations
+
 import json
 import warnings
 from collections.abc import Mapping
@@ -56,7 +58,7 @@ class GainingLines(Tabular, Shown):
             "psi": points[:, 1],
         }
 
-    def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
         """Draws the lines with matplotlib, with ticks on the side where energy is gained.
 
         ax: axes to draw in, or None for new ones. line: properties of all lines.

@@ -4,6 +4,8 @@ A `HybridSystem` has modes, each with a right-hand side and guards; `solve` runs
 switch. A plain function with events, as for SciPy's `solve_ivp`, needs no system.
 """
 
+from __future__ import annotations
+
 import operator
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -149,7 +151,7 @@ def _warn_once(reason: str) -> None:
 
 
 def _try_recorded(
-    table: "_Table",
+    table: _Table,
     begin: tuple[int, float, float],
     state: Floats,
     settings: dict[str, Any],

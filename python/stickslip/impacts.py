@@ -1,5 +1,7 @@
 """Impacts of two bodies in SI units."""
 
+from __future__ import annotations
+
 import json
 import math
 import os
@@ -292,7 +294,7 @@ class Impacts(Tabular):
     def _meanings(self) -> dict[str, dict[str, str]]:
         return {name: {"long_name": text, "units": unit} for name, (text, unit) in _UNITS.items()}
 
-    def plot(self, ax: "Axes | None" = None, **points: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **points: Any) -> Axes:
         """Draws both restitutions over the angle of incidence with matplotlib, or over the velocity
         if all angles are the same. The colours of points are the numbers of switches.
 

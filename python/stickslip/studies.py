@@ -1,5 +1,7 @@
 """Studies: stiff springs, convergence, contact laws, and the paper checked."""
 
+from __future__ import annotations
+
 import csv
 import json
 from collections.abc import Iterable, Sequence
@@ -47,13 +49,13 @@ class Table(Tabular, Shown):
 
     def plot(
         self,
-        ax: "Axes | None" = None,
+        ax: Axes | None = None,
         *,
         x: str | None = None,
         y: str | None = None,
         by: Sequence[str] | None = None,
         **line: Any,
-    ) -> "Axes":
+    ) -> Axes:
         """Draws one column over another one with matplotlib.
 
         ax: axes to draw in, or None for new ones. x, y: names of columns of numbers; some tables
@@ -81,7 +83,7 @@ class Study(Shown):
     #: What speaks against the results.
     objections: list[str]
 
-    def plot(self, ax: "Axes | None" = None, *, table: str | None = None, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, *, table: str | None = None, **line: Any) -> Axes:
         """Draws a table of the study with matplotlib; see `Table.plot`, which has the arguments.
 
         table: its name; without it, the first one that has usual columns. The pictures of the

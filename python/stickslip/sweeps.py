@@ -4,6 +4,8 @@ A sweep is cut into blocks. A block needs only its part of each parameter, and i
 on nothing else. So blocks are computed anywhere and in any order, and again where one got lost.
 """
 
+from __future__ import annotations
+
 import functools
 import itertools
 import math
@@ -48,7 +50,7 @@ def sweep(
     chunks: Chunks | None = None,
     errors: OnError = "nan",
     threads: int | None = None,
-) -> "Dataset":
+) -> Dataset:
     """Collisions over every combination of parameters.
 
     kappa, psi, damping: each a number, a one-dimensional array, or a DataArray. An array makes a
@@ -112,9 +114,9 @@ def write_sweep(
     chunks: Chunks = "auto",
     errors: OnError = "nan",
     threads: int | None = None,
-    client: "Client | None" = None,
+    client: Client | None = None,
     progress: Progress | None = None,
-) -> "Dataset":
+) -> Dataset:
     """Computes a sweep into a Zarr store, or goes on with one; returns it, opened lazily.
 
     store: path of a directory, which every worker must see. Each block is a chunk of the store. A

@@ -1,5 +1,7 @@
 """Tables of the restitution, to be looked up."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -47,7 +49,7 @@ class _Table:
         """Writes the JSON that the program writes."""
         Path(file).write_text(self._native.json() + "\n", encoding="utf-8")
 
-    def plot(self, ax: "Axes | None" = None, **colours: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
         """The picture of a table over its own axes."""
         raise NotImplementedError
 
@@ -101,7 +103,7 @@ class RestitutionTable(_Table):
         """The numbers of the regions; -1 where there is none. Arrays broadcast."""
         return self._region(kappa, psi)
 
-    def plot(self, ax: "Axes | None" = None, **colours: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
         """Draws eps_t as colours with matplotlib, and the boundaries of regions, if there are any.
 
         ax: axes to draw in, or None for new ones. colours: properties of the map.
@@ -147,7 +149,7 @@ class VelocityTable(_Table):
         """The numbers of the regions; -1 where there is none. Arrays broadcast."""
         return self._region(normal_m_per_s, tangential_m_per_s)
 
-    def plot(self, ax: "Axes | None" = None, **colours: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
         """Draws eps_t as colours with matplotlib, and the boundaries of regions, if there are any.
 
         ax: axes to draw in, or None for new ones. colours: properties of the map.

@@ -1,5 +1,7 @@
 """Errors of the time steps of particle codes."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
@@ -89,7 +91,7 @@ class TimeSteps(Tabular):
             columns |= {f"{quantity}_{one.name}": getattr(errors, one.name) for one in fields(errors)}
         return columns
 
-    def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
         """Draws the median and the largest errors over dt/t_c with matplotlib.
 
         ax: axes to draw in, or None for new ones. line: properties of all lines.
