@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from typing import Any, TypeAlias
 
@@ -99,6 +98,8 @@ def _listed(values: Iterable[Any]) -> str:
 
 def _near(name: str, known: Iterable[str]) -> str:
     """Known names that look like this one."""
+    from difflib import get_close_matches
+
     by_small = {one.lower(): one for one in known}
     near = get_close_matches(name.lower(), by_small, n=3, cutoff=0.75)
     return f"; perhaps {' or '.join(repr(by_small[one]) for one in near)}" if near else ""

@@ -370,7 +370,7 @@ class Recorded:
             )
 
 
-def recorded_formulas(function: Function, n: int, args: tuple[Any, ...] = ()) -> list[str]:
+def recorded(function: Function, n: int, args: tuple[Any, ...] = ()) -> list[str]:
     """The formulas of a function f(t, y, *args) of a state with n components, as text.
 
     They use t, y0, y1, …. Raises ValueError with the reason, if the function is no formula.
