@@ -14,6 +14,7 @@ import pytest
 from results import MADE, family, of
 
 import stickslip
+from stickslip import _atlas_results
 
 mpl.use("Agg")
 
@@ -168,6 +169,23 @@ def test_arrays_of_collisions_are_drawn_over_what_varies() -> None:
     with pytest.raises(ValueError, match="vary"):
         many.plot()
     assert many._repr_svg_() is None and "<svg" in stickslip.collide_many(kappa, psi)._repr_svg_()
+
+
+@pytest.mark.parametrize("name", ["Stack", "FamilyStack"])
+def test_stacks_show_numbers_of_regions(name: str) -> None:
+    found = of(name)
+    ax = _atlas_results.stack(found, None, {}, "end")
+    assert ax.get_xlabel() == "end" and len(ax.lines[0].get_xdata()) == len(found.layers)
+    counts = ax.lines[0].get_ydata()
+    assert list(counts) == [_atlas_results._regions(layer) for layer in found.layers]
+    assert len(ax.lines) >= 1 + len(found.changes)
+
+
+@pytest.mark.parametrize("name", ["Atlas", "FamilyAtlas"])
+def test_atlases_have_rows(name: str) -> None:
+    columns = _atlas_results.regions(of(name))
+    assert {len(column) for column in columns.values()} == {len(of(name).regions)}
+    assert list(columns["itinerary"]) == [str(one.itinerary) for one in of(name).regions]
 
 
 def test_tables_choose_columns() -> None:
