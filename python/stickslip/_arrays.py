@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 def unmasked(values: Any) -> NDArray[Any]:
     """The values as an array: of doubles, with NaN where they are masked, if they can be masked."""
-    if np.ma.isMaskedArray(values):
-        return np.ma.filled(np.ma.asarray(values, dtype=np.float64), np.nan)
+    # Without this module, which takes long to import, there are no masked arrays.
+    ma: Any = sys.modules.get("numpy.ma")
+    if ma is not None and isinstance(values, ma.MaskedArray):
+        filled: NDArray[np.float64] = ma.filled(ma.asarray(values, dtype=np.float64), np.nan)
+        return filled
     return np.asarray(values)
 
 

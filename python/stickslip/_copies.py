@@ -369,7 +369,7 @@ def _refuse_changing(value: Any) -> None:
         source = source if isinstance(source, types.ModuleType) else type(source)
         module = getattr(source, "__module__", None) or source.__name__
         name = f"{value.__name__}, which changes by itself"
-    elif isinstance(value, np.random.Generator | np.random.RandomState):
+    elif type(value).__module__.startswith("numpy.random."):
         name, module = "random numbers", "random"
     else:
         kind = value if isinstance(value, type) else type(value)

@@ -268,8 +268,9 @@ class Recorded:
         self.compare_start(values)
         dense = DenseOutput(found, np.array(self.table.names), self.start)
         starts, sizes, modes = found["starts"], found["sizes"], found["segment_modes"]
-        chosen = np.unique(np.linspace(0, starts.size - 1, MOST_PLACES).astype(int))
-        chosen = chosen[: starts.size]
+        # In order, and each once (`unique` imports masked arrays).
+        chosen = np.linspace(0, starts.size - 1, MOST_PLACES).astype(int)
+        chosen = chosen[np.diff(chosen, prepend=-1) > 0][: starts.size]
         # An irrational part of a step is at no event.
         times = starts[chosen] + 0.61803 * sizes[chosen]
         for t, mode, y in zip(times.tolist(), modes[chosen].tolist(), dense(times).T, strict=True):

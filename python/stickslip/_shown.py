@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -59,11 +58,13 @@ def _text(value: Any) -> str:
 
 def html_table(columns: Mapping[str, Any], title: str) -> str:
     """Columns as a table of HTML: the first rows, and how many there are."""
+    from html import escape
+
     count = max((len(column) for column in columns.values()), default=0)
     cut = min(count, _ROWS)
     heads = "".join(f"<th>{escape(name)}</th>" for name in columns)
     rows = "".join(
-        "<tr>" + "".join(f"<td>{_cell(column[row])}</td>" for column in columns.values()) + "</tr>"
+        "<tr>" + "".join(f"<td>{escape(_cell(column[row]))}</td>" for column in columns.values()) + "</tr>"
         for row in range(cut)
     )
     rest = f"<p>{count} rows, of which {cut} are shown</p>" if cut < count else ""
@@ -72,4 +73,4 @@ def html_table(columns: Mapping[str, Any], title: str) -> str:
 
 
 def _cell(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else escape(str(value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -25,6 +25,8 @@ _GAP = "\x01"
 MOST_PANELS = 8
 #: Points of the line in each step.
 _POINTS = 8
+#: And of the whole line, unless it has more steps.
+_MOST_POINTS = 200_000
 #: A run of fewer calls is repeated for a smooth line.
 _CHEAP = 1_000_000
 #: More events are marked by points alone.
@@ -164,9 +166,10 @@ def _line(found: Solution) -> _Line:
 
 
 def _times(curve: DenseOutput) -> NDArray[np.float64]:
-    """The same number of times in each step of a run."""
+    """The same number of times in each step of a run, with both ends."""
     starts, sizes, _ = curve._segments
-    inside = starts[:, None] + sizes[:, None] * np.linspace(0.0, 1.0, _POINTS)
+    points = int(np.clip(_MOST_POINTS // max(1, starts.size), 2, _POINTS))
+    inside = starts[:, None] + sizes[:, None] * np.linspace(0.0, 1.0, points)
     # Just before the end of a step: an event there may change the state.
     inside[:, -1] = np.nextafter(inside[:, -1], starts)
     return np.append(inside.ravel(), curve._end[0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -242,13 +242,23 @@ class Solution(Tabular):
         return f"Solution(status={self.status}: {self.message} {shape})"
 
 
-#: Names of modes and of the guards of each, by their numbers, and all names of guards.
-Names: TypeAlias = tuple[list[str], list[list[str]], list[str]]
+@dataclass(frozen=True)
+class Names:
+    """Names of modes and of the guards of each, by their numbers, and all names of guards."""
 
+    modes: list[str]
+    guards: list[list[str]]
+    events: list[str]
 
-def _width(names: Names) -> int:
-    """The length of the longest name."""
-    return max(1, *map(len, names[0]), *map(len, names[2]))
+    @cached_property
+    def width(self) -> int:
+        """The length of the longest name."""
+        return max(1, *map(len, self.modes), *map(len, self.events))
+
+    @cached_property
+    def mode_array(self) -> NDArray[np.str_]:
+        """The names of the modes."""
+        return np.array(self.modes)
 
 
 @cache
@@ -283,12 +293,12 @@ def variable_columns(variables: Named) -> list[Any]:
     return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
 
 
-def with_variables(found: dict[str, Any], variables: Named) -> tuple[list[Any], Columns, Columns]:
+def with_variables(found: dict[str, Any], variables: Named | None) -> tuple[list[Any], Columns, Columns]:
     """Takes the variables, which are the last components, out of the states that were `found`. The
     result is their column of events, their values at the points, and those behind events."""
-    held = variables.flat.size
-    if not held:
+    if not variables:
         return [], {}, {}
+    held = variables.flat.size
     size = found["end_state"].size
     of: dict[str, Columns] = {}
     for name in ("y", "event_before", "event_after", "coefficients"):
@@ -304,12 +314,14 @@ def event_array(
     found: dict[str, Any], dimension: int, names: Names, extra: list[Any]
 ) -> NDArray[np.void]:
     """Everything that fired, in order, with room for further columns."""
-    dtype = _event_type(_width(names), dimension)
+    dtype = _event_type(names.width, dimension)
     if extra:
-        dtype = np.dtype([*_event_columns(_width(names), dimension), *extra])
-    modes, guards, _ = names
+        dtype = np.dtype([*_event_columns(names.width, dimension), *extra])
+    modes, guards = names.modes, names.guards
     left = found["event_from"].tolist()
     events: NDArray[np.void] = np.empty(len(left), dtype=dtype)
+    if not left:
+        return events
     events["time"] = found["event_times"]
     fired = zip(left, found["event_guards"].tolist(), strict=True)
     events["guard"] = [guards[mode][guard] for mode, guard in fired]
@@ -338,9 +350,8 @@ def solution_of(
     again: tuple[FormulaSystem, Rerun] | None = None,
 ) -> Solution:
     """The solution that the native module has found, as columns."""
-    modes = np.array(names[0])
-    labels, event_names = names[1:]
-    touching, place, resting = _place_types(_width(names))
+    modes, labels, event_names = names.mode_array, names.guards, list(names.events)
+    touching, place, resting = _place_types(names.width)
     touches = [(t, labels[mode][g], modes[mode], m) for t, mode, g, m in found["touches"]]
     poles, preempted = (
         [(t, labels[mode][guard], modes[mode]) for t, mode, guard in found[kind]]

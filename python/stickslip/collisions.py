@@ -103,13 +103,16 @@ class Collision(Tabular):
         chosen = _laws.arguments(law, tangential_damping)
         self._arguments = (kappa, psi, damping, method, rtol, atol, *chosen)
         self._native = _native.Collision(kappa, psi, damping, (method, rtol, atol), chosen)
-        self._fields: dict[str, Any] = json.loads(self._native.json())
         #: Scaled stiffness of the tangential spring.
         self.kappa = kappa
         #: Reduced impact ratio (g_t/g_n) alpha/mu.
         self.psi = psi
         #: Scaled damping of the normal force.
         self.damping = damping
+
+    @cached_property
+    def _fields(self) -> dict[str, Any]:
+        return self.to_dict()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), self._arguments)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -102,6 +101,8 @@ class Study(Shown):
 
     def save(self, directory: str | Path) -> None:
         """Writes the JSON, CSV and SVG files of the study."""
+        import csv
+
         folder = Path(directory)
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps({"title": self.title, "findings": self.findings} | self.data, indent=2)
