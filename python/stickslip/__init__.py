@@ -8,89 +8,91 @@ codes), `fit` (contact laws to measured impacts), `table` (restitution to be loo
 `stack_family` (and how that changes with a third one).
 """
 
-from stickslip import _native
-from stickslip._compiled import Compiled
-from stickslip._derivatives import Sensitivities
-from stickslip._laws import NamedLaw, laws
-from stickslip._native import ComputationError
-from stickslip._solutions import DenseOutput, Solution
-from stickslip._systems import Guard, HybridSystem, Mode
-from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
-from stickslip.collisions import (
-    Collision,
-    Collisions,
-    Estimate,
-    Sensitivity,
-    collide,
-    collide_many,
-    eps_t,
-    eps_t_and_switch_count,
-    psi_of_ratio,
-)
-from stickslip.families import (
-    FamilyAtlas,
-    FamilyCurve,
-    FamilyLocated,
-    FamilyMargin,
-    FamilyRegion,
-    FamilyVertex,
-    Followed,
-    HybridFamily,
-    Itinerary,
-    MonitorZero,
-    TraceInterrupted,
-    TraceOptions,
-    Unresolved,
-    VerifyOptions,
-    trace_family,
-)
-from stickslip.family_stacks import (
-    FamilyChange,
-    FamilyLayer,
-    FamilyStack,
-    StackInterrupted,
-    stack_family,
-)
-from stickslip.fits import Fit, fit
-from stickslip._recorded import recorded_formulas as recorded
-from stickslip._sympy import from_sympy
-from stickslip.formulas import FormulaSystem, read, system
-from stickslip.gaining import GainingLine, GainingLines, gaining_lines
-from stickslip.hybrid import SampledGuardsWarning, solve
-from stickslip.impacts import (
-    Bodies,
-    Impacts,
-    Material,
-    Motion,
-    Sphere,
-    Surface,
-    Wall,
-    WallMotion,
-    impact,
-)
-from stickslip.many import solve_many
-from stickslip.maps import map
-from stickslip.stacks import Change, Layer, Stack, stack
-from stickslip.studies import (
-    Study,
-    Table,
-    asymptote,
-    contact_laws,
-    converge,
-    reproduce,
-    reproduction_parts,
-)
-from stickslip.sweeps import sweep, write_sweep
-from stickslip.tables import (
-    RestitutionTable,
-    VelocityTable,
-    load_table,
-    table,
-    table_of_velocities,
-)
-from stickslip.timesteps import StepErrors, TimeSteps, timestep
+import importlib
+from typing import TYPE_CHECKING, Any
 
-__version__ = _native.version()
+if TYPE_CHECKING:
+    __version__: str
+    from stickslip._compiled import Compiled
+    from stickslip._derivatives import Sensitivities
+    from stickslip._laws import NamedLaw, laws
+    from stickslip._native import ComputationError
+    from stickslip._solutions import DenseOutput, Solution
+    from stickslip._systems import Guard, HybridSystem, Mode
+    from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
+    from stickslip.collisions import (
+        Collision,
+        Collisions,
+        Estimate,
+        Sensitivity,
+        collide,
+        collide_many,
+        eps_t,
+        eps_t_and_switch_count,
+        psi_of_ratio,
+    )
+    from stickslip.families import (
+        FamilyAtlas,
+        FamilyCurve,
+        FamilyLocated,
+        FamilyMargin,
+        FamilyRegion,
+        FamilyVertex,
+        Followed,
+        HybridFamily,
+        Itinerary,
+        MonitorZero,
+        TraceInterrupted,
+        TraceOptions,
+        Unresolved,
+        VerifyOptions,
+        trace_family,
+    )
+    from stickslip.family_stacks import (
+        FamilyChange,
+        FamilyLayer,
+        FamilyStack,
+        StackInterrupted,
+        stack_family,
+    )
+    from stickslip.fits import Fit, fit
+    from stickslip._recorded import recorded
+    from stickslip._sympy import from_sympy
+    from stickslip.formulas import FormulaSystem, read, system
+    from stickslip.gaining import GainingLine, GainingLines, gaining_lines
+    from stickslip.hybrid import SampledGuardsWarning, solve
+    from stickslip.impacts import (
+        Bodies,
+        Impacts,
+        Material,
+        Motion,
+        Sphere,
+        Surface,
+        Wall,
+        WallMotion,
+        impact,
+    )
+    from stickslip.many import solve_many
+    from stickslip.maps import map
+    from stickslip.stacks import Change, Layer, Stack, stack
+    from stickslip.studies import (
+        Study,
+        Table,
+        asymptote,
+        contact_laws,
+        converge,
+        reproduce,
+        reproduction_parts,
+    )
+    from stickslip.sweeps import sweep, write_sweep
+    from stickslip.tables import (
+        RestitutionTable,
+        VelocityTable,
+        load_table,
+        table,
+        table_of_velocities,
+    )
+    from stickslip.timesteps import StepErrors, TimeSteps, timestep
 
 __all__ = [
     "Atlas",
@@ -184,3 +186,56 @@ __all__ = [
     "trace_family",
     "write_sweep",
 ]
+
+#: The modules that have the public names; one is imported when a name of it is first used.
+_MODULES = {
+    "_compiled": "Compiled",
+    "_derivatives": "Sensitivities",
+    "_laws": "NamedLaw laws",
+    "_native": "ComputationError",
+    "_solutions": "DenseOutput Solution",
+    "_systems": "Guard HybridSystem Mode",
+    "atlases": "Atlas AtlasWarning Boundary Located Region Vertex trace",
+    "collisions": (
+        "Collision Collisions Estimate Sensitivity collide collide_many eps_t "
+        "eps_t_and_switch_count psi_of_ratio"
+    ),
+    "families": (
+        "FamilyAtlas FamilyCurve FamilyLocated FamilyMargin FamilyRegion FamilyVertex Followed "
+        "HybridFamily Itinerary MonitorZero TraceInterrupted TraceOptions Unresolved "
+        "VerifyOptions trace_family"
+    ),
+    "family_stacks": "FamilyChange FamilyLayer FamilyStack StackInterrupted stack_family",
+    "fits": "Fit fit",
+    "_recorded": "recorded",
+    "_sympy": "from_sympy",
+    "formulas": "FormulaSystem read system",
+    "gaining": "GainingLine GainingLines gaining_lines",
+    "hybrid": "SampledGuardsWarning solve",
+    "impacts": "Bodies Impacts Material Motion Sphere Surface Wall WallMotion impact",
+    "many": "solve_many",
+    "maps": "map",
+    "stacks": "Change Layer Stack stack",
+    "studies": "Study Table asymptote contact_laws converge reproduce reproduction_parts",
+    "sweeps": "sweep write_sweep",
+    "tables": "RestitutionTable VelocityTable load_table table table_of_velocities",
+    "timesteps": "StepErrors TimeSteps timestep",
+}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        found: Any = importlib.import_module("stickslip._native").version()
+    elif name in _MODULE_OF:
+        found = getattr(importlib.import_module(f"stickslip.{_MODULE_OF[name]}"), name)
+    elif name in _MODULES:
+        return importlib.import_module(f"stickslip.{name}")
+    else:
+        raise AttributeError(f"module 'stickslip' has no attribute {name!r}")
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

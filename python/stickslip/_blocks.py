@@ -1,5 +1,7 @@
 """What a sweep computes: its parameters, quantities and blocks."""
 
+from __future__ import annotations
+
 import math
 import operator
 import re
@@ -11,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _native
+from stickslip._arrays import unmasked
 from stickslip.collisions import (
     Floats,
     Method,
@@ -89,7 +92,7 @@ class Engine:
         quantities: Sequence[str],
         errors: OnError,
         threads: int | None,
-    ) -> "Engine":
+    ) -> Engine:
         names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
         unknown = [name for name in names if name not in QUANTITIES]
         if unknown or not names or len(set(names)) < len(names):
@@ -160,7 +163,7 @@ class Engine:
 class Plan:
     """The parameters of a sweep, as coordinates, and its shape."""
 
-    coordinates: "Dataset"
+    coordinates: Dataset
     #: The names of the parameters that determine the sweep, without psi where ratio is given.
     parameters: tuple[str, ...]
     dims: tuple[str, ...]
@@ -175,7 +178,7 @@ class Plan:
         ratio: Parameter | None,
         mu: Parameter | None,
         alpha: Parameter | None,
-    ) -> "Plan":
+    ) -> Plan:
         import xarray as xr
 
         if (psi is None) == (ratio is None):
@@ -256,13 +259,13 @@ def block_shape(
     return block
 
 
-def _named(name: str, value: Any) -> "DataArray":
+def _named(name: str, value: Any) -> DataArray:
     """A parameter with names for its dimensions, its values as numbers in memory."""
     import xarray as xr
 
     if isinstance(value, xr.Dataset):
         raise TypeError(f"{name} is a Dataset; expected one of its variables")
-    values = np.ma.filled(value, np.nan) if np.ma.isMaskedArray(value) else np.asarray(value)
+    values = unmasked(value)
     if values.dtype.kind not in "iuf":
         raise TypeError(f"{name} has the type {values.dtype}; expected real numbers")
     if isinstance(value, xr.DataArray):
@@ -281,7 +284,7 @@ def _named(name: str, value: Any) -> "DataArray":
     return xr.DataArray(values.astype(np.float64), dims=dims, attrs=_PARAMETERS[name])
 
 
-def _labels(name: str, value: Any, parameters: "Mapping[str, DataArray]") -> "Dataset":
+def _labels(name: str, value: Any, parameters: Mapping[str, DataArray]) -> Dataset:
     """What else a DataArray has along its dimensions."""
     import xarray as xr
 

@@ -1,5 +1,7 @@
 """Compiled functions: addresses of numba, SciPy and ctypes."""
 
+from __future__ import annotations
+
 import ctypes
 import operator
 import re
@@ -8,6 +10,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from stickslip._arrays import unmasked
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -61,6 +65,15 @@ class Compiled:
     def __reduce__(self) -> Any:
         raise TypeError("an address means nothing in another process: Compiled cannot be pickled")
 
+    def __copy__(self) -> Compiled:
+        copy = object.__new__(type(self))
+        copy.__dict__.update(self.__dict__)
+        return copy
+
+    def __deepcopy__(self, memo: Any) -> Compiled:
+        # The code and its parameters never change.
+        return self.__copy__()
+
     def __repr__(self) -> str:
         return f"Compiled({self._keeps!r})"
 
@@ -108,7 +121,7 @@ Function: TypeAlias = Callable[..., Any] | Compiled
 
 def _reals(values: ArrayLike, what: str) -> Floats:
     """A copy as doubles."""
-    array = np.asarray(values)
+    array = unmasked(values)
     if array.dtype.kind == "c":
         raise TypeError(f"{what} is complex; expected real numbers (real and imaginary parts)")
     if array.dtype.kind not in "biufO" or (array.ndim == 0 and array.dtype.kind == "O"):

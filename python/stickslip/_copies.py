@@ -3,6 +3,8 @@
 Nothing that others see is changed: a copy has names of its own, and copies of what it could change.
 """
 
+from __future__ import annotations
+
 import builtins
 import copy
 import dis
@@ -44,7 +46,7 @@ _ARITHMETIC |= {"FloatingPointError", "BaseException", "suppress"}
 class _Module(types.ModuleType):
     """A module whose functions are copied when they are used."""
 
-    def __init__(self, real: types.ModuleType, copies: "Copies") -> None:
+    def __init__(self, real: types.ModuleType, copies: Copies) -> None:
         super().__init__(real.__name__)
         self.__dict__.update(_real=real, _copies=copies)
 
@@ -55,7 +57,7 @@ class _Module(types.ModuleType):
 class _Attribute:
     """What a class has, copied when it is used."""
 
-    def __init__(self, value: Any, copies: "Copies") -> None:
+    def __init__(self, value: Any, copies: Copies) -> None:
         self.value, self.copies = value, copies
 
     def __get__(self, instance: Any, owner: Any) -> Any:
@@ -367,7 +369,7 @@ def _refuse_changing(value: Any) -> None:
         source = source if isinstance(source, types.ModuleType) else type(source)
         module = getattr(source, "__module__", None) or source.__name__
         name = f"{value.__name__}, which changes by itself"
-    elif isinstance(value, np.random.Generator | np.random.RandomState):
+    elif type(value).__module__.startswith("numpy.random."):
         name, module = "random numbers", "random"
     else:
         kind = value if isinstance(value, type) else type(value)

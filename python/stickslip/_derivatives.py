@@ -1,20 +1,28 @@
 """Derivatives of runs, as the native module finds them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _solution_pictures
+from stickslip._shown import Shown, html_table
+from stickslip._tabular import Columns, Tabular, flat
+
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from stickslip.formulas import FormulaSystem
 
 #: The values of parameters; mode, time and state at the start; the end; and settings.
 Rerun = tuple[list[float], tuple[int | None, float | None, list[float] | None], float | None, Any]
 
 
-@dataclass(frozen=True)
-class Sensitivities:
+@dataclass(frozen=True, repr=False)
+class Sensitivities(Tabular, Shown):
     """Derivatives of the events of a run, and of its end, with respect to parameters and initial
     values. They hold as long as the order of events stays, and grow without bound towards a graze.
     """
@@ -33,8 +41,28 @@ class Sensitivities:
     #: As `Solution.outcome`.
     outcome: str
 
+    _dimension = "event"
 
-def sensitivities_of(system: "FormulaSystem", by: tuple[str, ...], rerun: Rerun) -> Sensitivities:
+    def _columns(self) -> Columns:
+        columns: Columns = {"event": self.event, "t": self.t}
+        columns |= {f"t_by_{name}": self.t_by[:, place] for place, name in enumerate(self.by)}
+        columns |= flat("y", self.y)
+        for place, name in enumerate(self.by):
+            columns |= flat(f"y_by_{name}", self.y_by[:, place])
+        return columns
+
+    def _repr_html_(self) -> str:
+        return html_table(self._columns(), "Derivatives of the events")
+
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the derivatives of the times of the events with matplotlib.
+
+        ax: axes to draw in, or None for new ones. line: properties of all lines.
+        """
+        return _solution_pictures.sensitivities(self, ax, line)
+
+
+def sensitivities_of(system: FormulaSystem, by: tuple[str, ...], rerun: Rerun) -> Sensitivities:
     """The derivatives of a run of a system."""
     parameters, components = list(system.parameters), system.components
     places = []

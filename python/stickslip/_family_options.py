@@ -1,5 +1,7 @@
 """Options of a trace, as the native module reads them."""
 
+from __future__ import annotations
+
 import json
 import operator
 from dataclasses import dataclass

@@ -1,9 +1,14 @@
 """Contact laws of particle codes."""
 
+from __future__ import annotations
+
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeAlias
+
+import numpy as np
 
 from stickslip import _native
 
@@ -45,8 +50,59 @@ def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
     """The law as the compiled module takes it."""
     if law is None:
         law = "paper"
+    if not isinstance(law, str | Mapping):
+        raise TypeError(f"law is of type {type(law).__name__}; expected a name, or a mapping of terms")
     text = law if isinstance(law, str) else json.dumps(dict(law), sort_keys=True)
+    _check(text)
     return text, float(tangential_damping)
+
+
+@cache
+def _check(text: str) -> None:
+    """Refuses what is no law, with names that are near."""
+    try:
+        # Without a single collision, nothing but the law is read.
+        nothing = (np.empty(0), np.empty(0), np.empty(0))
+        _native.eps_t(nothing, ("auto", None, None), (text, 0.0), True, 1)
+    except ValueError:
+        raise ValueError(_objection(text)) from None
+
+
+def _objection(text: str) -> str:
+    """What is wrong with a law."""
+    known = laws()
+    try:
+        terms = json.loads(text)
+    except ValueError:
+        terms = None
+    if not isinstance(terms, dict):
+        names = [f"{name}+limit_damping" for name in known] if "+" in text else list(known)
+        return f"law = {text!r}; expected a name of stickslip.laws(){_near(text, names)}"
+    # The terms that laws with names have, and their values.
+    values: dict[str, dict[Any, None]] = {}
+    for one in known.values():
+        for name, value in one.law.items():
+            values.setdefault(name, {})[value] = None
+    for name, value in terms.items():
+        if name not in values:
+            return f"law: {name!r} is no term; expected one of {_listed(values)}{_near(name, values)}"
+        if isinstance(value, dict | list) or value not in values[name] or type(value) is int:
+            listed = f"{_listed(values[name])}{_near(str(value), map(str, values[name]))}"
+            return f"law: {name} = {value!r}; expected one of {listed}"
+    return f"law = {text}; expected the terms of a law in stickslip.laws()"
+
+
+def _listed(values: Iterable[Any]) -> str:
+    return ", ".join(map(repr, values))
+
+
+def _near(name: str, known: Iterable[str]) -> str:
+    """Known names that look like this one."""
+    from difflib import get_close_matches
+
+    by_small = {one.lower(): one for one in known}
+    near = get_close_matches(name.lower(), by_small, n=3, cutoff=0.75)
+    return f"; perhaps {' or '.join(repr(by_small[one]) for one in near)}" if near else ""
 
 
 def attributes(law: Law | None, tangential_damping: float) -> dict[str, str | float]:

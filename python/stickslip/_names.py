@@ -1,7 +1,10 @@
 """Numbers with names: variables that only events change, and signs of surfaces."""
 
+from __future__ import annotations
+
 from collections import namedtuple
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from keyword import iskeyword
 from math import prod
 from typing import Any, TypeAlias
@@ -30,11 +33,15 @@ class Named:
         if not np.isfinite(self.flat).all():
             raise ValueError(f"{kind} = {dict(values)!r}; expected finite numbers")
         self._made_from = (kind, arrays)
-        self._tuple: Any = namedtuple(kind.capitalize(), self.names)  # type: ignore[misc]
 
     def __reduce__(self) -> Any:
         # The class of the tuples is not found by its name.
         return Named, self._made_from
+
+    @cached_property
+    def _tuple(self) -> Any:
+        # Most systems have none, and a class takes longer than a short run.
+        return namedtuple(self._made_from[0].capitalize(), self.names)
 
     def __bool__(self) -> bool:
         return bool(self.names)

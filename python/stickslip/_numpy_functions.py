@@ -1,5 +1,7 @@
 """Functions of numpy and SciPy that need more than arithmetic, for symbols."""
 
+from __future__ import annotations
+
 import bisect
 from collections.abc import Callable
 from typing import Any

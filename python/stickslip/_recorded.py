@@ -1,5 +1,7 @@
 """Systems of Python's functions that are recorded as formulas, run, and compared."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -266,8 +268,9 @@ class Recorded:
         self.compare_start(values)
         dense = DenseOutput(found, np.array(self.table.names), self.start)
         starts, sizes, modes = found["starts"], found["sizes"], found["segment_modes"]
-        chosen = np.unique(np.linspace(0, starts.size - 1, MOST_PLACES).astype(int))
-        chosen = chosen[: starts.size]
+        # In order, and each once (`unique` imports masked arrays).
+        chosen = np.linspace(0, starts.size - 1, MOST_PLACES).astype(int)
+        chosen = chosen[np.diff(chosen, prepend=-1) > 0][: starts.size]
         # An irrational part of a step is at no event.
         times = starts[chosen] + 0.61803 * sizes[chosen]
         for t, mode, y in zip(times.tolist(), modes[chosen].tolist(), dense(times).T, strict=True):
@@ -368,7 +371,7 @@ class Recorded:
             )
 
 
-def recorded_formulas(function: Function, n: int, args: tuple[Any, ...] = ()) -> list[str]:
+def recorded(function: Function, n: int, args: tuple[Any, ...] = ()) -> list[str]:
     """The formulas of a function f(t, y, *args) of a state with n components, as text.
 
     They use t, y0, y1, …. Raises ValueError with the reason, if the function is no formula.

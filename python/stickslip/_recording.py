@@ -3,6 +3,8 @@
 An `if` is followed both ways. What cannot be recorded raises `CannotRecord` with the reason.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Arguments of runs, checked."""
 
+from __future__ import annotations
+
 from typing import Any, TypeAlias
 
 import numpy as np

@@ -1,17 +1,28 @@
 """What a run gives: points, events, and the state at any time."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _solution_pictures
+from stickslip._arrays import real
+from stickslip._axes import Panels, svg
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
+from stickslip._libraries import library
 from stickslip._names import Named
+from stickslip._tabular import Columns as Table
+from stickslip._tabular import Tabular, flat
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
+
     from stickslip.formulas import FormulaSystem
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -42,7 +53,7 @@ class DenseOutput:
 
     def __call__(self, t: ArrayLike) -> Floats:
         """The state, shape (n,) at a number and (n, k) at k times."""
-        times = np.asarray(t, dtype=np.float64)
+        times = real("t", t)
         if times.ndim > 1:
             raise ValueError(f"t has {times.ndim} dimensions; expected a number or a list")
         flat = np.ascontiguousarray(times).reshape(-1)
@@ -52,7 +63,7 @@ class DenseOutput:
 
     def mode(self, t: ArrayLike) -> Any:
         """The mode at each time, or "" outside the run."""
-        times = np.asarray(t, dtype=np.float64)
+        times = real("t", t)
         starts, sizes, _ = self._segments
         sign = -1.0 if sizes.size and sizes[0] < 0.0 else 1.0
         index = np.searchsorted(sign * starts, sign * times, side="right") - 1
@@ -60,9 +71,19 @@ class DenseOutput:
         inside = (times >= self.t_min) & (times <= self.t_max)
         return np.where(inside, self._names[self._modes[index]], "")[()]
 
+    def plot(
+        self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
+    ) -> list[Axes]:
+        """Draws the state in time with matplotlib, coloured by mode; see `Solution.plot`."""
+        return _solution_pictures.dense(self, ax, components, line)
+
+    def __repr__(self) -> str:
+        size, steps = self._end[1].size, self._segments[0].size
+        return f"DenseOutput(t from {self.t_min} to {self.t_max}, {size} components, {steps} steps)"
+
 
 @dataclass(frozen=True)
-class Solution:
+class Solution(Tabular):
     """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
 
     #: Times, shape (k,): of the steps, or those of `t_eval`. A run that ends early ends with its
@@ -129,7 +150,7 @@ class Solution:
     _again: Any = field(default=None, repr=False, compare=False)
 
     @property
-    def system(self) -> "FormulaSystem | None":
+    def system(self) -> FormulaSystem | None:
         """The formulas that have run: those of a text, or those of recorded functions."""
         return None if self._again is None else self._again[0]
 
@@ -152,6 +173,60 @@ class Solution:
         system, rerun = self._again
         return sensitivities_of(system, by, rerun)
 
+    def plot(
+        self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
+    ) -> list[Axes]:
+        """Draws the state in time with matplotlib: coloured by mode, with its events.
+
+        ax: axes for each component, or one for all of them; without it, new ones. components: which
+        ones, the first eight unless given. line: properties of all lines. Without `dense_output`, a
+        run of formulas is repeated for the states between its steps, unless it is long. The result
+        is the axes, one for each component.
+        """
+        return _solution_pictures.solution(self, ax, components, line)
+
+    _dimension = "time"
+
+    @property
+    def _components(self) -> list[str]:
+        """The names of the components of the state."""
+        known = None if self.system is None else self.system.components[: len(self.y)]
+        return known or [f"y{place}" for place in range(len(self.y))]
+
+    def _columns(self) -> Table:
+        columns: Table = {"time": self.t, "mode": self.mode}
+        columns |= dict(zip(self._components, self.y, strict=True))
+        for name, values in self.variables.items():
+            columns |= flat(name, values)
+        return columns | {f"side_{name}": values for name, values in self.sides.items()}
+
+    def to_xarray(self) -> Dataset:
+        """A `xarray.Dataset` with `state` over time and component, and the mode over time;
+        variables and sides, if there are any.
+
+        Raises ImportError if xarray is not installed.
+        """
+        xr = library("xarray", "xarray", "for to_xarray")
+        rest = {name: one for name, one in self._columns().items() if name not in self._components}
+        time = rest.pop("time")
+        variables = {name: ("time", one) for name, one in rest.items()}
+        coordinates = {"time": time, "component": self._components}
+        state = {"state": (("time", "component"), self.y.T)}
+        found: Dataset = xr.Dataset(state | variables, coordinates)
+        return found
+
+    def _smooth(self, most_calls: int) -> DenseOutput | None:
+        """The state at any time by another run, if this one needed no more calls."""
+        if self._again is None or self.nfev > most_calls:
+            return None
+        system, (values, given, end, settings) = self._again
+        found = system._native.run(values, given, end, settings, [])
+        return DenseOutput(found, np.array(system.modes), found["start_time"])
+
+    def _repr_svg_(self) -> str | None:
+        count = min(len(self.y), _solution_pictures.MOST_PANELS)
+        return svg(self.plot, count) if count else None
+
     @property
     def success(self) -> bool:
         """Whether the run came to a regular end: status 0 or 1."""
@@ -167,13 +242,23 @@ class Solution:
         return f"Solution(status={self.status}: {self.message} {shape})"
 
 
-#: Names of modes and of the guards of each, by their numbers, and all names of guards.
-Names: TypeAlias = tuple[list[str], list[list[str]], list[str]]
+@dataclass(frozen=True)
+class Names:
+    """Names of modes and of the guards of each, by their numbers, and all names of guards."""
 
+    modes: list[str]
+    guards: list[list[str]]
+    events: list[str]
 
-def _width(names: Names) -> int:
-    """The length of the longest name."""
-    return max(1, *map(len, names[0]), *map(len, names[2]))
+    @cached_property
+    def width(self) -> int:
+        """The length of the longest name."""
+        return max(1, *map(len, self.modes), *map(len, self.events))
+
+    @cached_property
+    def mode_array(self) -> NDArray[np.str_]:
+        """The names of the modes."""
+        return np.array(self.modes)
 
 
 @cache
@@ -185,12 +270,12 @@ def _event_columns(width: int, dimension: int) -> list[Any]:
 
 
 @cache
-def _event_type(width: int, dimension: int) -> "np.dtype[np.void]":
+def _event_type(width: int, dimension: int) -> np.dtype[np.void]:
     return np.dtype(_event_columns(width, dimension))
 
 
 @cache
-def _place_types(width: int) -> tuple["np.dtype[np.void]", ...]:
+def _place_types(width: int) -> tuple[np.dtype[np.void], ...]:
     """The types of touches, of poles and guards that were preempted, and of rests."""
     text = f"U{width}"
     place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
@@ -208,12 +293,12 @@ def variable_columns(variables: Named) -> list[Any]:
     return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
 
 
-def with_variables(found: dict[str, Any], variables: Named) -> tuple[list[Any], Columns, Columns]:
+def with_variables(found: dict[str, Any], variables: Named | None) -> tuple[list[Any], Columns, Columns]:
     """Takes the variables, which are the last components, out of the states that were `found`. The
     result is their column of events, their values at the points, and those behind events."""
-    held = variables.flat.size
-    if not held:
+    if not variables:
         return [], {}, {}
+    held = variables.flat.size
     size = found["end_state"].size
     of: dict[str, Columns] = {}
     for name in ("y", "event_before", "event_after", "coefficients"):
@@ -229,12 +314,14 @@ def event_array(
     found: dict[str, Any], dimension: int, names: Names, extra: list[Any]
 ) -> NDArray[np.void]:
     """Everything that fired, in order, with room for further columns."""
-    dtype = _event_type(_width(names), dimension)
+    dtype = _event_type(names.width, dimension)
     if extra:
-        dtype = np.dtype([*_event_columns(_width(names), dimension), *extra])
-    modes, guards, _ = names
+        dtype = np.dtype([*_event_columns(names.width, dimension), *extra])
+    modes, guards = names.modes, names.guards
     left = found["event_from"].tolist()
     events: NDArray[np.void] = np.empty(len(left), dtype=dtype)
+    if not left:
+        return events
     events["time"] = found["event_times"]
     fired = zip(left, found["event_guards"].tolist(), strict=True)
     events["guard"] = [guards[mode][guard] for mode, guard in fired]
@@ -260,12 +347,11 @@ def solution_of(
     guards: str,
     variables: dict[str, NDArray[np.float64]] | None = None,
     sides: dict[str, NDArray[np.int8]] | None = None,
-    again: "tuple[FormulaSystem, Rerun] | None" = None,
+    again: tuple[FormulaSystem, Rerun] | None = None,
 ) -> Solution:
     """The solution that the native module has found, as columns."""
-    modes = np.array(names[0])
-    labels, event_names = names[1:]
-    touching, place, resting = _place_types(_width(names))
+    modes, labels, event_names = names.mode_array, names.guards, list(names.events)
+    touching, place, resting = _place_types(names.width)
     touches = [(t, labels[mode][g], modes[mode], m) for t, mode, g, m in found["touches"]]
     poles, preempted = (
         [(t, labels[mode][guard], modes[mode]) for t, mode, guard in found[kind]]

@@ -1,5 +1,7 @@
 """What values consist of, to see whether a function changes them."""
 
+from __future__ import annotations
+
 import types
 from collections.abc import Iterator
 from typing import Any

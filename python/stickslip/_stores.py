@@ -1,5 +1,7 @@
 """Zarr stores of sweeps, which are written block by block, by anybody, in any order."""
 
+from __future__ import annotations
+
 import functools
 import hashlib
 import json
@@ -117,7 +119,7 @@ def create_store(
         shutil.rmtree(draft, ignore_errors=True)
 
 
-def open_store(path: Path) -> "zarr.Group":
+def open_store(path: Path) -> zarr.Group:
     """The store, if it is one of ours."""
     import zarr
     from zarr.storage import LocalStore
@@ -137,7 +139,7 @@ def open_store(path: Path) -> "zarr.Group":
 
 
 def refuse_another(
-    path: Path, group: "zarr.Group", plan: Plan, engine: Engine, block: tuple[int, ...]
+    path: Path, group: zarr.Group, plan: Plan, engine: Engine, block: tuple[int, ...]
 ) -> None:
     """Raises unless the store is of this sweep."""
     marks: Any = group["_blocks"].attrs.asdict()
@@ -164,7 +166,7 @@ def refuse_another(
         raise ValueError(f"{path} is of another sweep: {'; '.join(differ)}")
 
 
-def _same(group: "zarr.Group", plan: Plan, name: str) -> bool:
+def _same(group: zarr.Group, plan: Plan, name: str) -> bool:
     variable = plan.coordinates[name].variable
     array = _array(group, name)
     return (
@@ -174,7 +176,7 @@ def _same(group: "zarr.Group", plan: Plan, name: str) -> bool:
     )
 
 
-def _array(group: "zarr.Group", name: str) -> "zarr.Array[Any]":
+def _array(group: zarr.Group, name: str) -> zarr.Array[Any]:
     import zarr
 
     array = group[name]
@@ -232,9 +234,9 @@ def write_block(store: str, place: tuple[int, ...], errors: OnError, threads: in
 
 
 def _is_whole(
-    targets: "Mapping[str, zarr.Array[Any]]",
+    targets: Mapping[str, zarr.Array[Any]],
     here: tuple[slice, ...],
-    digests: "zarr.Array[Any]",
+    digests: zarr.Array[Any],
     place: tuple[int, ...],
     errors: OnError,
 ) -> bool:
@@ -263,7 +265,7 @@ def _digest(found: Mapping[str, NDArray[Any]]) -> int:
 
 
 def on_workers(
-    client: "Client", store: str, places: list[tuple[int, ...]], errors: OnError, threads: int
+    client: Client, store: str, places: list[tuple[int, ...]], errors: OnError, threads: int
 ) -> Iterator[None]:
     """Yields when a block is done; Dask runs those of a lost worker again."""
     from distributed import as_completed
@@ -295,7 +297,7 @@ def complete(path: Path) -> None:
         draft.replace(metadata)
 
 
-def dataset(path: Path) -> "Dataset":
+def dataset(path: Path) -> Dataset:
     import xarray as xr
     from zarr.storage import LocalStore
 

@@ -1,5 +1,7 @@
 """What stands for functions of `math`, numpy and Python, so that they understand symbols."""
 
+from __future__ import annotations
+
 import builtins
 import math
 import types

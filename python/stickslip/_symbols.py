@@ -3,6 +3,8 @@
 numpy's protocols lead here: what a function does with symbols becomes nodes of a tape.
 """
 
+from __future__ import annotations
+
 import math
 import numbers
 import threading
@@ -43,7 +45,7 @@ class Symbol:
     shape: tuple[int, ...] = ()
     ndim, size, imag = 0, 1, 0.0
 
-    def __init__(self, tape: "Decisions", node: int) -> None:
+    def __init__(self, tape: Decisions, node: int) -> None:
         self.tape, self.id = tape, node
 
     def __getattr__(self, name: str) -> Any:
@@ -102,10 +104,10 @@ class Symbol:
         return repr(self)
 
     @property
-    def real(self) -> "Symbol":
+    def real(self) -> Symbol:
         return self
 
-    def item(self) -> "Symbol":
+    def item(self) -> Symbol:
         return self
 
     copy = conjugate = item
@@ -146,10 +148,10 @@ class Condition:
     _no, astype = Symbol._no, Symbol.astype
 
     @property
-    def tape(self) -> "Decisions":
+    def tape(self) -> Decisions:
         return self.symbol.tape
 
-    def __invert__(self) -> "Condition":
+    def __invert__(self) -> Condition:
         return Condition(self.symbol, not self.negative)
 
     def _join(self, other: Any, name: str) -> Any:

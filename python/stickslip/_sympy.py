@@ -1,5 +1,7 @@
 """Expressions of SymPy as functions of time, state and parameters."""
 
+from __future__ import annotations
+
 import importlib
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -1,5 +1,7 @@
 """Systems of modes, with what ends them and what follows."""
 
+from __future__ import annotations
+
 import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,6 +10,7 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip._arrays import real
 from stickslip._compiled import Compiled, Function, _number
 from stickslip._names import Named, check_sets
 
@@ -23,7 +26,7 @@ class Guard:
 
     name: str
     direction: Direction = "below"
-    to: "str | Mode | None" = None
+    to: str | Mode | None = None
     reset: Function | None = None
     transition: Callable[..., Any] | None = None
     terminal: bool | int = False
@@ -32,7 +35,7 @@ class Guard:
     priority: int = 0
     condition: Function | None = None
     sees_jumps: bool = False
-    rest: "str | Mode | Callable[..., Any] | None" = None
+    rest: str | Mode | Callable[..., Any] | None = None
     sets: Sets | None = None
 
     def __post_init__(self) -> None:
@@ -115,7 +118,7 @@ class Mode:
         name: str,
         function: Function,
         *,
-        to: "str | Mode | None" = None,
+        to: str | Mode | None = None,
         reset: Function | None = None,
         transition: Callable[..., Any] | None = None,
         direction: Direction = "below",
@@ -125,9 +128,9 @@ class Mode:
         priority: int = 0,
         condition: Function | None = None,
         sees_jumps: bool = False,
-        rest: "str | Mode | Callable[..., Any] | None" = None,
+        rest: str | Mode | Callable[..., Any] | None = None,
         sets: Sets | None = None,
-    ) -> "Mode":
+    ) -> Mode:
         """Adds a guard, and returns the mode.
 
         function(t, y) is a number, and the guard fires at its zeros. direction: "below" fires as
@@ -170,7 +173,7 @@ class Mode:
         )
         return self._add(function, f"guard {name!r} of mode {self.name!r}", (guard,))
 
-    def guards(self, function: Function, *guards: Guard) -> "Mode":
+    def guards(self, function: Function, *guards: Guard) -> Mode:
         """Adds guards whose values one function returns, in this order, and returns the mode."""
         if not guards:
             raise ValueError("no guards are given; expected at least one")
@@ -181,13 +184,13 @@ class Mode:
         name: str,
         times: ArrayLike,
         *,
-        to: "str | Mode | None" = None,
+        to: str | Mode | None = None,
         reset: Function | None = None,
         transition: Callable[..., Any] | None = None,
         terminal: bool | int = False,
         priority: int = 0,
         sets: Sets | None = None,
-    ) -> "Mode":
+    ) -> Mode:
         """Adds events at times, and returns the mode. Steps end there exactly, without a search.
 
         What follows is said as for a guard. A time at which the mode begins belongs to the mode
@@ -200,7 +203,7 @@ class Mode:
         >>> round(float(solve(tank, (0.0, 2.0), [0.0]).y[0, -1]), 12)
         0.503214724408
         """
-        listed = np.atleast_1d(np.asarray(times, dtype=np.float64)).tolist()
+        listed = np.atleast_1d(real("times", times)).tolist()
         return self._clock(name, listed, to, reset, transition, terminal, priority, sets)
 
     def every(
@@ -209,13 +212,13 @@ class Mode:
         period: float,
         *,
         phase: float = 0.0,
-        to: "str | Mode | None" = None,
+        to: str | Mode | None = None,
         reset: Function | None = None,
         transition: Callable[..., Any] | None = None,
         terminal: bool | int = False,
         priority: int = 0,
         sets: Sets | None = None,
-    ) -> "Mode":
+    ) -> Mode:
         """Adds events at the times phase + k period, as `at` does, and returns the mode."""
         times = (_number(period, "period"), _number(phase, "phase"))
         if not (0.0 < times[0] < np.inf and np.isfinite(times[1])):
@@ -226,13 +229,13 @@ class Mode:
         self,
         name: str,
         times: tuple[float, float] | list[float],
-        to: "str | Mode | None",
+        to: str | Mode | None,
         reset: Function | None,
         transition: Callable[..., Any] | None,
         terminal: bool | int,
         priority: int,
         sets: Sets | None,
-    ) -> "Mode":
+    ) -> Mode:
         guard = _Clock(
             name,
             "falling",
@@ -246,7 +249,7 @@ class Mode:
         )
         return self._add(None, f"clock {name!r} of mode {self.name!r}", (guard,))
 
-    def _add(self, function: Function | None, label: str, guards: tuple[Guard, ...]) -> "Mode":
+    def _add(self, function: Function | None, label: str, guards: tuple[Guard, ...]) -> Mode:
         if function is not None:
             _check_function(function, label)
         names = [guard.name for guard in self.guard_list + guards]

@@ -1,18 +1,29 @@
 """Collisions in scaled parameters: one, or arrays of them."""
 
+from __future__ import annotations
+
 import json
+import os
 import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _laws, _native
-from stickslip._arrays import numbers
+from stickslip import _laws, _native, _pictures
+from stickslip._arrays import numbers, real
+from stickslip._axes import Panels, svg
 from stickslip._laws import Law
+from stickslip._libraries import library
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular, write_parquet
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
 
 Floats: TypeAlias = NDArray[np.float64]
 Method: TypeAlias = Literal["auto", "exact", "dop853", "dopri5"]
@@ -63,8 +74,8 @@ class Estimate(NamedTuple):
     certain: bool
 
 
-@dataclass(frozen=True)
-class Sensitivity:
+@dataclass(frozen=True, repr=False)
+class Sensitivity(Shown):
     """Derivatives through every switch, of dtype `DERIVED`."""
 
     eps_n: NDArray[np.void]
@@ -75,7 +86,7 @@ class Sensitivity:
     switch_times: NDArray[np.void]
 
 
-class Collision:
+class Collision(Tabular):
     """One collision, from `collide`. All quantities are scaled, without unit."""
 
     def __init__(
@@ -92,13 +103,16 @@ class Collision:
         chosen = _laws.arguments(law, tangential_damping)
         self._arguments = (kappa, psi, damping, method, rtol, atol, *chosen)
         self._native = _native.Collision(kappa, psi, damping, (method, rtol, atol), chosen)
-        self._fields: dict[str, Any] = json.loads(self._native.json())
         #: Scaled stiffness of the tangential spring.
         self.kappa = kappa
         #: Reduced impact ratio (g_t/g_n) alpha/mu.
         self.psi = psi
         #: Scaled damping of the normal force.
         self.damping = damping
+
+    @cached_property
+    def _fields(self) -> dict[str, Any]:
+        return self.to_dict()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), self._arguments)
@@ -201,16 +215,36 @@ class Collision:
         rows = np.array([tuple(row) for row in self._native.sensitivity()], dtype=DERIVED)
         return Sensitivity(rows[0], rows[1], rows[2], rows[3], rows[4:])
 
+    _dimension = "time"
+
+    def _columns(self) -> Columns:
+        course = self.history()
+        switches = self.switches["time"]
+        # Both ends of a phase are rows.
+        phases = np.repeat(list(self.itinerary), course.size // (switches.size + 1))
+        return {name: course[name] for name in course.dtype.names or ()} | {"phase": phases}
+
     def to_dict(self) -> dict[str, Any]:
         """The JSON object that `stickslip collide --format json` prints."""
         copy: dict[str, Any] = json.loads(self._native.json())
         return copy
+
+    def plot(self, ax: Panels = None, **line: Any) -> list[Axes]:
+        """Draws forces and velocities in time with matplotlib, and shades the phases.
+
+        ax: two axes, or one for both; without it, new ones. line: properties of the lines. The
+        result is the axes of the forces and of the velocities.
+        """
+        return _pictures.collision(self, ax, line)
 
     def picture(self) -> str:
         """Forces and velocity against time, as an SVG document."""
         return self._native.picture()
 
     def _repr_html_(self) -> str:
+        return self.picture()
+
+    def _repr_svg_(self) -> str:
         return self.picture()
 
     def __repr__(self) -> str:
@@ -220,7 +254,7 @@ class Collision:
         )
 
 
-class Collisions:
+class Collisions(Tabular):
     """Arrays of collisions, from `collide_many`. All arrays have the broadcast `shape`."""
 
     def __init__(
@@ -231,7 +265,7 @@ class Collisions:
         shape: tuple[int, ...],
     ) -> None:
         self._engine = engine
-        self._columns = columns
+        self._found = columns
         self.shape = shape
         #: Scaled stiffness, impact ratio and damping.
         self.kappa, self.psi, self.damping = (np.broadcast_to(one, shape) for one in parameters)
@@ -278,10 +312,10 @@ class Collisions:
     @cached_property
     def switches(self) -> NDArray[np.void]:
         """All switches one after another, an array of dtype `SWITCH`."""
-        switches = np.empty(self._columns["time"].size, dtype=SWITCH)
+        switches = np.empty(self._found["time"].size, dtype=SWITCH)
         for name in ("time", "time_left", "side", "spring", "velocity"):
-            switches[name] = self._columns[name]
-        switches["to"] = np.where(self._columns["stick"], "stick", "slip")
+            switches[name] = self._found[name]
+        switches["to"] = np.where(self._found["stick"], "stick", "slip")
         return switches
 
     def __getitem__(self, index: int | tuple[int, ...]) -> Collision:
@@ -302,20 +336,18 @@ class Collisions:
 
         Itineraries are a dictionary array, the switches of a row a list of structs.
         """
-        import pyarrow as pa  # type: ignore[import-untyped]
-
+        pa = library("pyarrow", "arrow", "for to_arrow")
         present = self.itinerary_codes.reshape(-1) >= 0
         codes = pa.array(self.itinerary_codes.reshape(-1), mask=~present)
         fields = [
-            (name, pa.array(self._columns[name]))
+            (name, pa.array(self._found[name]))
             for name in ("time", "time_left", "stick", "side", "spring", "velocity")
         ]
         switches = pa.StructArray.from_arrays(
             [array for _, array in fields], names=[name for name, _ in fields]
         )
         columns = {
-            name: np.ascontiguousarray(getattr(self, name)).reshape(-1)
-            for name in ("kappa", "psi", "damping", "eps_n", "eps_t", "w_final", "contact_time")
+            name: np.ascontiguousarray(getattr(self, name)).reshape(-1) for name in _NUMBERS
         }
         return pa.table(
             {name: pa.array(column) for name, column in columns.items()}
@@ -326,8 +358,85 @@ class Collisions:
             }
         )
 
+    def _columns(self) -> Columns:
+        names = (*_NUMBERS, "reversals", "switch_count", "itinerary")
+        return {name: np.ravel(getattr(self, name)) for name in names}
+
+    def to_xarray(self) -> Dataset:
+        """A `xarray.Dataset` with the shape of the collisions, without their switches.
+
+        An axis along which only one parameter varies has its name; others are dim_0, dim_1 and so
+        on.
+
+        Raises ImportError if xarray is not installed.
+        """
+        from stickslip.maps import ATTRIBUTES
+
+        xr = library("xarray", "xarray", "for to_xarray")
+        given = {name: getattr(self, name) for name in ("kappa", "psi", "damping")}
+        dims = _dimensions(given, self.shape)
+        coordinates = {}
+        for name, values in given.items():
+            own = tuple(
+                dim for axis, dim in enumerate(dims) if dim == name or _varies(values, axis)
+            )
+            index = tuple(slice(None) if dim in own else 0 for dim in dims)
+            coordinates[name] = (own, values[index], ATTRIBUTES[name])
+        names = [name for name in self._columns() if name not in given]
+        variables = {
+            name: (dims, np.reshape(getattr(self, name), self.shape), ATTRIBUTES.get(name, {}))
+            for name in names
+        }
+        found: Dataset = xr.Dataset(variables, coordinates)
+        return found
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Writes the rows of `to_arrow`, with all switches, to a Parquet file, complete or not at
+        all.
+
+        Raises ImportError if pyarrow is not installed.
+        """
+        write_parquet(self.to_arrow(), path)
+
+    def plot(self, ax: Axes | None = None, **points: Any) -> Axes:
+        """Draws eps_t with matplotlib over the parameter that varies, or as colours over two.
+
+        ax: axes to draw in, or None for new ones. points: properties of points, or of the map of a
+        grid. Over one parameter, the colours of points are the numbers of switches.
+
+        Raises ValueError if all three parameters vary.
+        """
+        return _pictures.collisions(self, ax, points)
+
+    def _repr_svg_(self) -> str | None:
+        alone = self.size < 2 or all(np.ptp(one) > 0 for one in (self.kappa, self.psi, self.damping))
+        return None if alone else svg(self.plot)
+
     def __repr__(self) -> str:
         return f"Collisions(shape={self.shape}, failures={len(self.failures)})"
+
+
+#: Numbers of each collision.
+_NUMBERS = ("kappa", "psi", "damping", "eps_n", "eps_t", "w_final", "contact_time")
+
+
+def _varies(values: NDArray[Any], axis: int) -> bool:
+    """Whether values change along an axis."""
+    return bool((values != values.take([0], axis)).any()) if values.shape[axis] else False
+
+
+def _dimensions(given: dict[str, NDArray[Any]], shape: tuple[int, ...]) -> tuple[str, ...]:
+    """The names of the axes: of the parameter that varies along this axis only, alone."""
+    along = {
+        name: [axis for axis in range(len(shape)) if _varies(values, axis)]
+        for name, values in given.items()
+    }
+    dims = []
+    for axis in range(len(shape)):
+        names = [name for name, axes in along.items() if axis in axes]
+        alone = len(names) == 1 and along[names[0]] == [axis]
+        dims.append(names[0] if alone else f"dim_{axis}")
+    return tuple(dims)
 
 
 def psi_of_ratio(ratio: ArrayLike, mu: ArrayLike = 0.4, alpha: ArrayLike = 2 / 7) -> Any:
@@ -339,8 +448,7 @@ def psi_of_ratio(ratio: ArrayLike, mu: ArrayLike = 0.4, alpha: ArrayLike = 2 / 7
     >>> round(float(psi_of_ratio(0.7)), 12)
     0.5
     """
-    ratio, mu, alpha = (np.asarray(one, dtype=np.float64) for one in (ratio, mu, alpha))
-    return ratio * alpha / mu
+    return real("ratio", ratio) * real("alpha", alpha) / real("mu", mu)
 
 
 def collide(

@@ -4,17 +4,22 @@
 every curve in a window of the parameters on which the sequence of events of its runs changes.
 """
 
+from __future__ import annotations
+
 import graphlib
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from itertools import count, pairwise
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _solution_pictures
+from stickslip._arrays import real
+from stickslip._axes import svg
 from stickslip._compiled import Compiled, Function, _count, _number
 from stickslip._family_atlases import (
     Cancelled,
@@ -34,7 +39,10 @@ from stickslip._family_atlases import (
     _pairs,
 )
 from stickslip._family_options import TraceOptions, VerifyOptions, _json
+from stickslip._progress import check, reported
 from stickslip._recorded import Recorded
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular, flat
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
@@ -42,6 +50,9 @@ from stickslip.collisions import Floats, _threads
 from stickslip._run_arguments import settings_of, span, state_at_start
 from stickslip.formulas import FormulaSystem
 from stickslip.hybrid import MOST_RECORDED, _arguments, _callee, _Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = [
     "FamilyAtlas",
@@ -77,8 +88,8 @@ class MonitorZero:
     point: tuple[float, float] | None
 
 
-@dataclass(frozen=True)
-class Followed:
+@dataclass(frozen=True, repr=False)
+class Followed(Tabular, Shown):
     """One boundary, from `HybridFamily.follow`."""
 
     margin: FamilyMargin
@@ -94,6 +105,23 @@ class Followed:
     #: The value of each monitor at each point, shape (monitors, n).
     values: Floats
     zeros: tuple[MonitorZero, ...] = field(default=())
+
+    _dimension = "point"
+
+    def _columns(self) -> Columns:
+        x, y = self.points.T
+        along = dict(zip(("tangent_x", "tangent_y"), self.tangents.T, strict=True))
+        return {"x": x, "y": y} | along | flat("monitor", self.values.T)
+
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the boundary with matplotlib, and the zeros of monitors.
+
+        ax: axes to draw in, or None for new ones. line: properties of the boundary.
+        """
+        return _solution_pictures.followed(self, ax, line)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
 
 
 class HybridFamily:
@@ -152,6 +180,8 @@ class HybridFamily:
         guard_scale: float | None = None,
         record: bool | None = None,
     ) -> None:
+        given = {name: value for name, value in locals().items() if name != "self"}
+        self._made = partial(HybridFamily, **given)
         if not isinstance(system, HybridSystem):
             hint = "; expected HybridFamily.of" if isinstance(system, FormulaSystem) else ""
             kind = type(system).__name__
@@ -271,7 +301,7 @@ class HybridFamily:
         max_step: float = np.inf,
         first_step: float | None = None,
         max_switches: int = 10_000_000,
-    ) -> "HybridFamily":
+    ) -> HybridFamily:
         """The family of a system of formulas over two of its parameters, by their names.
 
         parameters: the values of others. end: where all runs end, instead of the system's own end.
@@ -302,6 +332,10 @@ class HybridFamily:
             raise ValueError(f"end = {end!r}; expected a number")
         settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
         family = cls.__new__(cls)
+        family._made = partial(
+            cls.of, system, x, y, parameters=parameters, end=end, name=name, rtol=rtol, atol=atol,
+            max_step=max_step, first_step=first_step, max_switches=max_switches,
+        )  # fmt: skip
         family.name, family.axes = _text(name, "name"), (x, y)
         axes = [known.index(x), known.index(y)]
         last = None if end is None else float(end)
@@ -313,7 +347,7 @@ class HybridFamily:
         return family
 
     def __reduce__(self) -> Any:
-        raise TypeError("a HybridFamily cannot be pickled; build it in each process")
+        return _made_again, (self._made,)
 
     def label(self, x: float, y: float) -> Itinerary:
         """What the run with the parameters x and y does."""
@@ -359,7 +393,7 @@ class HybridFamily:
         the boundary are solved for; NaN says that there is no value.
         """
         window = (_interval(x, "x"), _interval(y, "y"))
-        places = np.asarray(between, dtype=np.float64)
+        places = real("between", between)
         if places.shape != (2, 2) or not np.isfinite(places).all():
             raise ValueError(f"between = {between!r}; expected two points (x, y)")
         functions = list(monitors)
@@ -389,6 +423,10 @@ class HybridFamily:
         return f"HybridFamily({self.name!r}, axes: {self.axes}, guards: {self.guards})"
 
 
+def _made_again(make: partial[HybridFamily]) -> HybridFamily:
+    return make()
+
+
 def trace_family(
     family: HybridFamily,
     x: tuple[float, float],
@@ -399,7 +437,7 @@ def trace_family(
     tolerance: float = 1e-9,
     rounds: int = 8,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     cancelled: Cancelled | None = None,
 ) -> FamilyAtlas:
     """Every curve in a window of the parameters on which the itinerary of the runs changes, and the
@@ -418,7 +456,7 @@ def trace_family(
     that a run has no value there, and fails.
 
     progress(done, steps): called now and then with the steps that are done, and those of all stages
-    that have begun; more may come. cancelled(): asked
+    that have begun; more may come. True shows a bar on stderr. cancelled(): asked
     between tasks; if it is true, the trace ends with what was found so far, and
     `FamilyAtlas.resume` goes on. Both are called on the thread that traces. Ctrl-C raises
     TraceInterrupted, a KeyboardInterrupt whose `atlas` can be resumed too.
@@ -426,10 +464,12 @@ def trace_family(
     if not isinstance(family, HybridFamily):
         raise TypeError(f"{type(family).__name__} is not a HybridFamily")
     window, text = _survey(x, y, options, verify, tolerance, rounds)
-    _check_calls(progress, cancelled)
-    calls = (progress, cancelled)
+    check(progress)
+    _check_calls(None, cancelled)
     family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
-    return _finish(family._native.trace(window, text, _threads(threads), calls))
+    with reported(progress, f"trace of {family.name}") as report:
+        found = family._native.trace(window, text, _threads(threads), (report, cancelled))
+    return _finish(found)
 
 
 def _survey(

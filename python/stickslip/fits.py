@@ -1,18 +1,27 @@
 """Fits of contact laws to measured impacts."""
 
+from __future__ import annotations
+
 import json
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip import _laws, _native
+from stickslip import _laws, _native, _pictures
+from stickslip._arrays import numbers
+from stickslip._axes import Panels
+from stickslip._kept import Kept
 from stickslip._laws import Law
+from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import _threads
 from stickslip.impacts import Bodies
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -34,10 +43,10 @@ class Minimum:
     at_end_of_range: bool
 
 
-class Fit:
+class Fit(Tabular):
     """A fit: all minima with the best one first, and intervals."""
 
-    def __init__(self, native: _native.Fit) -> None:
+    def __init__(self, native: _native.Fit | Kept) -> None:
         self._native = native
         #: All numbers, as the program prints them.
         self.data: dict[str, Any] = json.loads(native.json())
@@ -48,16 +57,44 @@ class Fit:
             one["parameter"]: _pieces(one["pieces"]) for one in self.data["intervals"]
         }
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (Kept(self._native.json(), self.picture()),)
+
     @property
     def best(self) -> Minimum:
         """The best minimum."""
         return self.minima[0]
 
+    _dimension = "minimum"
+
+    def _columns(self) -> Columns:
+        names = [one.name for one in fields(Minimum) if one.name != "root_mean_squares"]
+        columns: Columns = {}
+        for name in names:
+            column = [getattr(one, name) for one in self.minima]
+            columns[name] = np.array([np.nan if one is None else one for one in column])
+        for quantity in self.best.root_mean_squares:
+            squares = [one.root_mean_squares[quantity] for one in self.minima]
+            columns[f"root_mean_square_{quantity}"] = np.array(squares)
+        return columns
+
+    def plot(self, ax: Panels = None, **points: Any) -> list[Axes]:
+        """Draws data and fit over the angle of incidence with matplotlib.
+
+        ax: axes for each quantity of the data, or one for all of them; without it, new ones.
+        points: properties of the measured points. The result is the axes, one for each quantity.
+        """
+        return _pictures.fit(self, ax, points)
+
     def picture(self) -> str | None:
         """Data, fit and the boundaries of its switches over the angle as an SVG document."""
-        return self._native.picture()
+        found: str | None = self._native.picture()
+        return found
 
     def _repr_html_(self) -> str | None:
+        return self.picture()
+
+    def _repr_svg_(self) -> str | None:
         return self.picture()
 
     def __repr__(self) -> str:
@@ -120,7 +157,7 @@ def fit(
 
 
 def _column(name: str, values: ArrayLike) -> np.ndarray[Any, np.dtype[np.float64]]:
-    column = np.array(values, dtype=np.float64)
+    column = numbers(name, values)
     if column.ndim != 1:
         raise ValueError(f"{name} has {column.ndim} dimensions; expected 1")
     return column

@@ -4,7 +4,10 @@
 repository.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -38,7 +41,7 @@ class FormulaSystem:
         self._native = _native.FormulaSystem(text)
 
     @classmethod
-    def _of(cls, native: _native.FormulaSystem) -> "FormulaSystem":
+    def _of(cls, native: _native.FormulaSystem) -> FormulaSystem:
         system = cls.__new__(cls)
         system._native = native
         return system
@@ -51,6 +54,10 @@ class FormulaSystem:
     @property
     def parameters(self) -> dict[str, float]:
         """The values that parameters have unless others are given, by name."""
+        return dict(self._defaults)
+
+    @cached_property
+    def _defaults(self) -> dict[str, float]:
         return {name: value for name, value, _ in self._native.parameters()}
 
     @property
@@ -210,9 +217,10 @@ class FormulaSystem:
         event_names: list[str] | None = None,
         variables: Named | None = None,
     ) -> Solution:
-        modes, labels, labelled = self._names
-        names = (modes, labels, [*labelled] if event_names is None else event_names)
-        extra, held, behind = with_variables(found, variables or Named("variables", {}))
+        names = self._names
+        if event_names is not None:
+            names = replace(names, events=event_names)
+        extra, held, behind = with_variables(found, variables)
         events = event_array(found, found["end_state"].size, names, extra)
         for name, values in behind.items():
             events["variables"][name] = values
@@ -233,7 +241,7 @@ class FormulaSystem:
         rows = self._native.modes()
         labels = [rules for _, rules in rows]
         known = list(dict.fromkeys(label for rules in labels for label in rules))
-        return [name for name, _ in rows], labels, known
+        return Names([name for name, _ in rows], labels, known)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())

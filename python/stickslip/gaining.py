@@ -1,21 +1,29 @@
 """Where a contact law gives back more tangential energy than it took: the lines |eps_t| = 1."""
 
+from __future__ import annotations
+
 import json
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip import _laws, _native
+from stickslip import _laws, _native, _pictures
+from stickslip._axes import svg
 from stickslip._laws import Law
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-@dataclass(frozen=True)
-class GainingLine:
+
+@dataclass(frozen=True, repr=False)
+class GainingLine(Shown):
     """A line in the (kappa, psi) plane on which |eps_t| is 1."""
 
     #: 1 or -1.
@@ -27,8 +35,8 @@ class GainingLine:
     points: Floats
 
 
-@dataclass(frozen=True)
-class GainingLines:
+@dataclass(frozen=True, repr=False)
+class GainingLines(Tabular, Shown):
     """The lines of a window, from `gaining_lines`."""
 
     #: The object that `stickslip trace --gaining` writes.
@@ -36,6 +44,29 @@ class GainingLines:
     lines: tuple[GainingLine, ...]
     #: What speaks against the lines; None if nothing does.
     objection: str | None
+
+    _dimension = "point"
+
+    def _columns(self) -> Columns:
+        sizes = [len(line.points) for line in self.lines]
+        points = np.concatenate([np.empty((0, 2)), *(line.points for line in self.lines)])
+        return {
+            "line": np.repeat(np.arange(len(sizes)), sizes),
+            "eps_t": np.repeat([line.eps_t for line in self.lines], sizes),
+            "gains_left": np.repeat([line.gains_left for line in self.lines], sizes),
+            "kappa": points[:, 0],
+            "psi": points[:, 1],
+        }
+
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the lines with matplotlib, with ticks on the side where energy is gained.
+
+        ax: axes to draw in, or None for new ones. line: properties of all lines.
+        """
+        return _pictures.gaining(self, ax, line)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
 
 
 def gaining_lines(

@@ -4,6 +4,8 @@ A `HybridSystem` has modes, each with a right-hand side and guards; `solve` runs
 switch. A plain function with events, as for SciPy's `solve_ivp`, needs no system.
 """
 
+from __future__ import annotations
+
 import operator
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -17,11 +19,13 @@ from stickslip import _native
 from stickslip._compiled import Compiled, Function, _number
 from stickslip._recorded import Recorded
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
-from stickslip._solutions import Solution, event_array, solution_of, variable_columns
+from stickslip._solutions import Names, Solution, event_array, solution_of, variable_columns
 from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
 Floats: TypeAlias = NDArray[np.float64]
+#: Functions have no variables and no surfaces.
+_NOTHING = HybridSystem()
 #: Functions of more components are recorded on request only: numpy is faster than many formulas.
 MOST_RECORDED = 200
 
@@ -149,7 +153,7 @@ def _warn_once(reason: str) -> None:
 
 
 def _try_recorded(
-    table: "_Table",
+    table: _Table,
     begin: tuple[int, float, float],
     state: Floats,
     settings: dict[str, Any],
@@ -189,7 +193,7 @@ class _Table:
         else:
             _check_function(system, "the right-hand side")
             self.system_modes = (Mode("", system),)
-            owner = HybridSystem()
+            owner = _NOTHING
         self.variables, self.signs, self.surfaces = owner._variables, owner._signs, owner._sliding
         self.names = [mode.name for mode in self.system_modes]
         # Guards are counted by their place. If one ends the run when it fires again, all guards of
@@ -389,7 +393,8 @@ class _Table:
         if self.signs:
             signs = [(name, "i1") for name in self.signs.names]
             extra += [("sides_from", signs), ("sides_to", signs), ("unique", "?")]
-        events = event_array(found, dimension, (names, guards, self.event_names), extra)
+        named = Names(names, guards, self.event_names)
+        events = event_array(found, dimension, named, extra)
         left, to = found["event_from"], found["event_to"]
         for name, values in variables.items():
             events["variables"][name] = values[to]
@@ -401,7 +406,7 @@ class _Table:
         return solution_of(
             found,
             events,
-            (names, guards, self.event_names),
+            named,
             start=start,
             dense=dense,
             guards="decided" if found["decided"] else f"sampled: {self.reason}",

@@ -1,20 +1,27 @@
 """Impacts of two bodies in SI units."""
 
+from __future__ import annotations
+
 import json
 import math
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Self, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip import _laws, _native
+from stickslip import _laws, _native, _pictures
 from stickslip._arrays import numbers
+from stickslip._axes import svg
 from stickslip._laws import Law
+from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Collisions, Floats, Method, OnError, collide_many
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Vector: TypeAlias = tuple[float, float, float]
 T = TypeVar("T")
@@ -210,6 +217,14 @@ class Bodies:
         kappa, psi, damping, unit = (one.reshape(given[0].shape) for one in found)
         return kappa, psi, damping, unit
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        made_from = (self.sphere, self.other, self.surface, self.law)
+        return type(self), made_from, {"_motions": self._motions}
+
+    def __repr__(self) -> str:
+        law = "" if self.law is None else f",\n  law={self.law!r}"
+        return f"Bodies(\n  {self.sphere},\n  {self.other},\n  {self.surface}{law})"
+
     def encounter(
         self,
         motion: Motion | None = None,
@@ -235,7 +250,17 @@ class Bodies:
         return found
 
 
-class Impacts:
+#: Meanings and units of what impacts have beside their collisions.
+_UNITS = {
+    "normal_m_per_s": ("normal velocity before", "m/s"),
+    "tangential_m_per_s": ("tangential velocity before", "m/s"),
+    "normal_after_m_per_s": ("normal velocity after", "m/s"),
+    "tangential_after_m_per_s": ("tangential velocity after", "m/s"),
+    "contact_time_s": ("duration of the contact", "s"),
+}
+
+
+class Impacts(Tabular):
     """Arrays of impacts, from `impact`, in the order and shape of the velocities."""
 
     def __init__(
@@ -259,6 +284,26 @@ class Impacts:
         self.time_unit_s = unit
         #: Number of switches.
         self.switch_count = found.switch_count
+
+    _dimension = "impact"
+
+    def _columns(self) -> Columns:
+        names = (*_UNITS, "eps_n", "eps_t", "switch_count")
+        return {name: np.ravel(getattr(self, name)) for name in names}
+
+    def _meanings(self) -> dict[str, dict[str, str]]:
+        return {name: {"long_name": text, "units": unit} for name, (text, unit) in _UNITS.items()}
+
+    def plot(self, ax: Axes | None = None, **points: Any) -> Axes:
+        """Draws both restitutions over the angle of incidence with matplotlib, or over the velocity
+        if all angles are the same. The colours of points are the numbers of switches.
+
+        ax: axes to draw in, or None for new ones. points: properties of the points.
+        """
+        return _pictures.impacts(self, ax, points)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot) if self.collisions.size > 1 else None
 
     def __repr__(self) -> str:
         return f"Impacts(shape={self.collisions.shape})"

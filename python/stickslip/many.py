@@ -1,13 +1,16 @@
 """Many runs of one system: over arrays of parameters and of initial values, on all threads."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._arrays import real
 from stickslip._blocks import Chunks, aligned, block_shape
 from stickslip._compiled import Function
 from stickslip._recorded import Recorded
@@ -39,9 +42,9 @@ def solve_many(
     y0: ArrayLike | None = None,
     mode: str | Mode | None = None,
     *,
-    parameters: Mapping[str, Union[ArrayLike, "DataArray"]] | None = None,
-    initial: Mapping[str, Union[ArrayLike, "DataArray"]] | None = None,
-    events: "Function | Iterable[Function] | None" = None,
+    parameters: Mapping[str, ArrayLike | DataArray] | None = None,
+    initial: Mapping[str, ArrayLike | DataArray] | None = None,
+    events: Function | Iterable[Function] | None = None,
     args: tuple[Any, ...] = (),
     method: str = "dop853",
     rtol: float = 1e-10,
@@ -52,7 +55,7 @@ def solve_many(
     max_switches: int = 10_000_000,
     chunks: Chunks | None = None,
     threads: int | None = None,
-) -> "Dataset":
+) -> Dataset:
     """Runs a system for every combination of parameters and initial values.
 
     system: a `FormulaSystem`; or functions, as for `solve`, which are recorded: they get the
@@ -210,7 +213,7 @@ class _Runs:
             results["state"] = (("time", "component"), samples)
         return results
 
-    def coordinates(self, arrays: "Mapping[str, DataArray]") -> dict[str, Any]:
+    def coordinates(self, arrays: Mapping[str, DataArray]) -> dict[str, Any]:
         coordinates: dict[str, Any] = {**arrays, "component": self.system.components}
         return coordinates if self.times is None else {**coordinates, "time": self.times}
 
@@ -218,8 +221,8 @@ class _Runs:
         self,
         found: dict[str, Any],
         axes: tuple[tuple[str, ...], tuple[int, ...]],
-        arrays: "Mapping[str, DataArray]",
-    ) -> "Dataset":
+        arrays: Mapping[str, DataArray],
+    ) -> Dataset:
         """What was found, with the events of all runs one after another."""
         import xarray as xr
 
@@ -247,11 +250,11 @@ class _Runs:
 
     def lazy(
         self,
-        arrays: "Mapping[str, DataArray]",
+        arrays: Mapping[str, DataArray],
         axes: tuple[tuple[str, ...], tuple[int, ...]],
         chunks: Chunks,
         threads: int | None,
-    ) -> "Dataset":
+    ) -> Dataset:
         """The same without events, on Dask. A task holds only its part of each array."""
         import dask.array as da
         import xarray as xr
@@ -322,13 +325,13 @@ def _mode_of(system: FormulaSystem, mode: str | Mode) -> int:
     return system.modes.index(str(mode))
 
 
-def _array(name: str, value: Any) -> "DataArray":
+def _array(name: str, value: Any) -> DataArray:
     import xarray as xr
 
     if isinstance(value, xr.DataArray):
         array = value.astype(float)
     else:
-        plain = np.asarray(value, dtype=float)
+        plain = real(name, value)
         if plain.ndim > 1:
             raise ValueError(
                 f"{name} has {plain.ndim} dimensions; expected a number, an array of one dimension, "

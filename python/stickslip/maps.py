@@ -1,5 +1,7 @@
 """Maps: collisions on a grid, as an xarray Dataset."""
 
+from __future__ import annotations
+
 import operator
 from typing import TYPE_CHECKING, Any
 
@@ -62,7 +64,7 @@ def map(
     tangential_damping: float = 0.0,
     errors: OnError = "nan",
     threads: int | None = None,
-) -> "Dataset":
+) -> Dataset:
     """eps_t and switch_count on a grid, at the points where `stickslip map` has them.
 
     kappa, psi: intervals, 0 or above; collisions are at the centres of `size` = (columns, rows)

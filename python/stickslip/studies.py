@@ -1,22 +1,28 @@
 """Studies: stiff springs, convergence, contact laws, and the paper checked."""
 
-import csv
+from __future__ import annotations
+
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import _native
+from stickslip import _native, _study_pictures
+from stickslip._shown import Shown, html_table
+from stickslip._tabular import Tabular
 from stickslip.collisions import _threads
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-@dataclass(frozen=True)
-class Table:
+
+@dataclass(frozen=True, repr=False)
+class Table(Tabular, Shown):
     """Rows of values."""
 
     name: str
@@ -31,9 +37,36 @@ class Table:
         turned = zip(*self.rows, strict=True) if self.rows else ([] for _ in self.meanings)
         return {name: np.array(column) for name, column in zip(self.meanings, turned, strict=True)}
 
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return self.columns
 
-@dataclass(frozen=True)
-class Study:
+    def _meanings(self) -> dict[str, dict[str, str]]:
+        return {name: {"long_name": text} for name, text in self.meanings.items()}
+
+    def _repr_html_(self) -> str:
+        return html_table(self.columns, self.title)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        x: str | None = None,
+        y: str | None = None,
+        by: Sequence[str] | None = None,
+        **line: Any,
+    ) -> Axes:
+        """Draws one column over another one with matplotlib.
+
+        ax: axes to draw in, or None for new ones. x, y: names of columns of numbers; some tables
+        have usual ones. by: columns that tell lines apart. line: properties of all lines.
+
+        Raises ValueError if there is no such column, or if none are usual and none are given.
+        """
+        return _study_pictures.table(self, ax, (x, y, by), line)
+
+
+@dataclass(frozen=True, repr=False)
+class Study(Shown):
     """Numbers, tables, pictures and sentences of a study."""
 
     name: str
@@ -49,8 +82,27 @@ class Study:
     #: What speaks against the results.
     objections: list[str]
 
+    def plot(self, ax: Axes | None = None, *, table: str | None = None, **line: Any) -> Axes:
+        """Draws a table of the study with matplotlib; see `Table.plot`, which has the arguments.
+
+        table: its name; without it, the first one that has usual columns. The pictures of the
+        program are in `pictures`.
+
+        Raises ValueError if no table has usual columns.
+        """
+        if table is None:
+            tables = [one for one in self.tables.values() if _study_pictures.usual(one)]
+            if not tables:
+                raise ValueError(f"table is missing; expected one of {list(self.tables)}")
+            return tables[0].plot(ax, **line)
+        if table not in self.tables:
+            raise ValueError(f"table = {table!r}; expected one of {list(self.tables)}")
+        return self.tables[table].plot(ax, **line)
+
     def save(self, directory: str | Path) -> None:
         """Writes the JSON, CSV and SVG files of the study."""
+        import csv
+
         folder = Path(directory)
         folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps({"title": self.title, "findings": self.findings} | self.data, indent=2)

@@ -4,12 +4,14 @@ A sweep is cut into blocks. A block needs only its part of each parameter, and i
 on nothing else. So blocks are computed anywhere and in any order, and again where one got lost.
 """
 
+from __future__ import annotations
+
 import functools
 import itertools
 import math
 import operator
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +21,7 @@ from numpy.typing import NDArray
 from stickslip import _laws, _stores
 from stickslip._blocks import QUANTITIES, Chunks, Engine, Parameter, Plan, Quantity, aligned
 from stickslip._laws import Law
+from stickslip._progress import Progress, check, reported
 from stickslip.collisions import (
     Floats,
     Method,
@@ -47,7 +50,7 @@ def sweep(
     chunks: Chunks | None = None,
     errors: OnError = "nan",
     threads: int | None = None,
-) -> "Dataset":
+) -> Dataset:
     """Collisions over every combination of parameters.
 
     kappa, psi, damping: each a number, a one-dimensional array, or a DataArray. An array makes a
@@ -111,9 +114,9 @@ def write_sweep(
     chunks: Chunks = "auto",
     errors: OnError = "nan",
     threads: int | None = None,
-    client: "Client | None" = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> "Dataset":
+    client: Client | None = None,
+    progress: Progress | None = None,
+) -> Dataset:
     """Computes a sweep into a Zarr store, or goes on with one; returns it, opened lazily.
 
     store: path of a directory, which every worker must see. Each block is a chunk of the store. A
@@ -123,7 +126,8 @@ def write_sweep(
 
     client: a `distributed.Client`, whose workers compute the blocks; without it, they are computed
     here. threads: for each block; without it, one for each core here, and one with a client.
-    progress: called with the number of finished blocks and of all blocks. The other arguments are
+    progress: called with the number of finished blocks and of all blocks; True shows a bar on
+    stderr. The other arguments are
     those of `sweep`.
 
     Raises ValueError for what is refused, and OSError where the store cannot be written.
@@ -131,6 +135,7 @@ def write_sweep(
     engine = Engine.of(
         method, rtol, atol, _laws.attributes(law, tangential_damping), quantities, errors, threads
     )
+    check(progress)
     plan = Plan.of(kappa, psi, damping, ratio, mu, alpha)
     block = plan.block_shape(chunks)
     if "://" in os.fspath(store):
@@ -154,9 +159,10 @@ def write_sweep(
         done: Iterator[None] = map(write, places)
     else:
         done = _stores.on_workers(client, str(path), places, errors, threads or 1)
-    for number, _ in enumerate(done, start=1):
-        if progress is not None:
-            progress(number, len(places))
+    with reported(progress, "sweep") as report:
+        for number, _ in enumerate(done, start=1):
+            if report is not None:
+                report(number, len(places))
     _stores.complete(path)
     return _stores.dataset(path)
 

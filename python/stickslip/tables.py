@@ -1,17 +1,24 @@
 """Tables of the restitution, to be looked up."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _pictures
 from stickslip._arrays import real
+from stickslip._axes import svg
 from stickslip.collisions import _threads
 from stickslip.impacts import Bodies
+
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class _Table:
@@ -31,6 +38,9 @@ class _Table:
         #: The itineraries of the regions, by their numbers; empty without regions.
         self.itineraries: list[str] = native.itineraries
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _read, (self._native.json(),)
+
     def c_header(self, prefix: str = "stickslip") -> str:
         """The table as a self-contained header for C99, whose names begin with prefix."""
         return self._native.c_header(prefix)
@@ -38,6 +48,13 @@ class _Table:
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the JSON that the program writes."""
         Path(file).write_text(self._native.json() + "\n", encoding="utf-8")
+
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
+        """The picture of a table over its own axes."""
+        raise NotImplementedError
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
 
     def _eps_t(self, x: ArrayLike, y: ArrayLike, threads: int | None) -> NDArray[np.float64]:
         flat_x, flat_y, shape = _points(x, y)
@@ -86,6 +103,13 @@ class RestitutionTable(_Table):
         """The numbers of the regions; -1 where there is none. Arrays broadcast."""
         return self._region(kappa, psi)
 
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
+        """Draws eps_t as colours with matplotlib, and the boundaries of regions, if there are any.
+
+        ax: axes to draw in, or None for new ones. colours: properties of the map.
+        """
+        return _pictures.table(self, ("kappa", self.kappa), ("psi", self.psi), ax, colours)
+
     def __repr__(self) -> str:
         return self._shown(f"kappa {self.kappa}, psi {self.psi}, damping {self.damping}")
 
@@ -124,6 +148,15 @@ class VelocityTable(_Table):
     def region(self, normal_m_per_s: ArrayLike, tangential_m_per_s: ArrayLike) -> NDArray[np.int64]:
         """The numbers of the regions; -1 where there is none. Arrays broadcast."""
         return self._region(normal_m_per_s, tangential_m_per_s)
+
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
+        """Draws eps_t as colours with matplotlib, and the boundaries of regions, if there are any.
+
+        ax: axes to draw in, or None for new ones. colours: properties of the map.
+        """
+        x = ("normal_m_per_s", self.normal_m_per_s)
+        y = ("tangential_m_per_s", self.tangential_m_per_s)
+        return _pictures.table(self, x, y, ax, colours)
 
     def __repr__(self) -> str:
         normal, tangential = self.normal_m_per_s, self.tangential_m_per_s
@@ -200,7 +233,11 @@ def load_table(file: str | os.PathLike[str]) -> RestitutionTable | VelocityTable
 
     Raises ValueError if the file holds no table, or one that contradicts itself.
     """
-    native = _native.RestitutionTable.read(Path(file).read_text(encoding="utf-8"))
+    return _read(Path(file).read_text(encoding="utf-8"))
+
+
+def _read(text: str) -> RestitutionTable | VelocityTable:
+    native = _native.RestitutionTable.read(text)
     return VelocityTable(native) if native.scaled is None else RestitutionTable(native)
 
 

@@ -1,22 +1,30 @@
 """Errors of the time steps of particle codes."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _laws, _native
+from stickslip import _laws, _native, _pictures
+from stickslip._kept import Kept
 from stickslip._laws import Law
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import _broadcast, _threads
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Quantity: TypeAlias = Literal["eps_t", "eps_n", "energy"]
 
 
-@dataclass(frozen=True)
-class StepErrors:
+@dataclass(frozen=True, repr=False)
+class StepErrors(Shown):
     """Absolute errors of one quantity over impacts and start phases, a value for each step.
 
     Where contacts do not end there are no errors, but NaN and -1.
@@ -31,10 +39,10 @@ class StepErrors:
     worst_phase: NDArray[np.float64]
 
 
-class TimeSteps:
+class TimeSteps(Tabular):
     """Errors of time steps against collisions without steps, from the longest step to the shortest."""
 
-    def __init__(self, native: _native.TimeSteps) -> None:
+    def __init__(self, native: _native.TimeSteps | Kept) -> None:
         self._native = native
         #: All numbers, as the program prints them.
         self.data: dict[str, Any] = json.loads(native.json())
@@ -50,18 +58,54 @@ class TimeSteps:
         #: Of the kinetic energy after the contact, as a part of that before.
         self.energy: StepErrors = _errors(rows, "energy")
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (Kept(self._native.json(), self.picture()),)
+
     def largest_step(self, wanted: float, quantity: Quantity = "eps_t") -> float | None:
         """The largest dt/t_c at which all errors are at most wanted, as at all shorter steps here.
 
         None if that does not hold at the shortest step. Nothing is promised of other steps.
         """
-        return self._native.largest_step(quantity, float(wanted))
+        if quantity not in get_args(Quantity):
+            raise ValueError(f"quantity = {quantity!r}; expected one of {get_args(Quantity)}")
+        worst = getattr(self, quantity).worst
+        largest = None
+        for status, error, steps in zip(
+            reversed(self.status), worst[::-1], self.steps_per_contact[::-1], strict=True
+        ):
+            if status != "ok" or not error <= wanted:
+                break
+            largest = 1.0 / float(steps)
+        return largest
+
+    _dimension = "step"
+
+    def _columns(self) -> Columns:
+        columns: Columns = {
+            "steps_per_contact": self.steps_per_contact,
+            "status": np.array(self.status),
+            "stiffness": self.stiffness,
+        }
+        for quantity in get_args(Quantity):
+            errors = getattr(self, quantity)
+            columns |= {f"{quantity}_{one.name}": getattr(errors, one.name) for one in fields(errors)}
+        return columns
+
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the median and the largest errors over dt/t_c with matplotlib.
+
+        ax: axes to draw in, or None for new ones. line: properties of all lines.
+        """
+        return _pictures.time_steps(self, ax, line)
 
     def picture(self) -> str:
         """The median and the largest errors over dt/t_c as an SVG document."""
-        return self._native.picture()
+        return str(self._native.picture())
 
     def _repr_html_(self) -> str:
+        return self.picture()
+
+    def _repr_svg_(self) -> str:
         return self.picture()
 
     def __repr__(self) -> str:

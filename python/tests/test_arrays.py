@@ -58,6 +58,30 @@ def test_masked_values_are_none() -> None:
     assert np.isnan(found[1]) and np.isfinite(found[[0, 2]]).all()
 
 
+def test_masked_values_are_none_everywhere() -> None:
+    two = np.ma.array([1, 2], mask=[False, True])
+    assert np.isnan(stickslip.psi_of_ratio(two)).tolist() == [False, True]
+    assert np.isnan(stickslip.map((1, 2), (1, 2), (1, 1)).eps_t).sum() == 0
+    assert np.isnan(stickslip.sweep(kappa=two, psi=0.5).eps_t).values.tolist() == [False, True]
+    run = stickslip.solve(lambda t, y: -y, (0, 3), [1.0], dense_output=True)
+    assert run.sol is not None and run.sol.mode(two).tolist() == ["", ""]
+    assert np.isnan(run.sol(two)).tolist() == [[False, True]]
+    history = stickslip.collide(63, 0.5).history(two)
+    assert np.isnan(history["velocity"]).tolist() == [False, True]
+    for call in (
+        lambda: stickslip.solve(lambda t, y: -y, (0, 3), two),
+        lambda: stickslip.solve_many(
+            lambda t, y, k: -k * y, (0, 3), [1.0], parameters={"k": two}
+        ),
+    ):
+        with pytest.raises(ValueError, match="finite"):
+            call()
+    data = {"centre_impact_angle_deg": np.array([10.0, 30.0, 60.0])}
+    e_t = np.ma.array([0.57, 0.58, 9.0], mask=[False, False, True])
+    found = stickslip.fit(data | {"centre_e_t": e_t}, free=["mu"], kappa=6.0)
+    assert [row["row"] for row in found.data["residuals"]] == [0, 1]
+
+
 @pytest.mark.parametrize("value", ["63", True, 63j, np.array(["2020-01-01"], "M8[D]")])
 def test_what_is_not_a_real_number(value: object) -> None:
     for function in (stickslip.eps_t, stickslip.collide_many):

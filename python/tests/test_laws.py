@@ -70,8 +70,23 @@ def test_laws_have_names() -> None:
 def test_what_has_no_meaning_is_refused() -> None:
     with pytest.raises(ValueError, match=r"expected a name of stickslip.laws\(\)"):
         stickslip.collide(2.0, 0.4, law="hooke")
-    with pytest.raises(ValueError, match="unknown variant"):
-        stickslip.collide(2.0, 0.4, law={"normal": "hooke"})
+    for law, words in (
+        ("gran/hooke/histry", r"a name of stickslip.laws\(\); perhaps 'gran/hooke/history' or"),
+        ("Paper", "; perhaps 'paper'$"),
+        ("paper+limit_dampin", "; perhaps 'paper\\+limit_damping'"),
+        ('{"normal":', "expected a name"),
+        ({"normal": "hooke"}, "normal = 'hooke'; expected one of 'hertz', 'linear'$"),
+        ({"normal": "linaer"}, "'hertz', 'linear'; perhaps 'linear'$"),
+        ({"nomal": "linear"}, "'nomal' is no term; expected one of .*; perhaps 'normal'$"),
+        ({"rescaled": "yes"}, "rescaled = 'yes'; expected one of False, True$"),
+        ({"rescaled": 1}, "rescaled = 1; expected one of False, True$"),
+        ({"normal": ["hertz"]}, r"normal = \['hertz'\]; expected one of"),
+    ):
+        with pytest.raises(ValueError, match=words) as caught:
+            stickslip.eps_t(2.0, [0.4], law=law)
+        assert "line 1" not in str(caught.value)
+    with pytest.raises(TypeError, match="law is of type int"):
+        stickslip.collide(2.0, 0.4, law=3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="never end"):
         stickslip.collide(2.0, 0.4, 2.5, law="granular/hertz/tsuji/mindlin")
     with pytest.raises(ValueError, match="tangential_damping = 1.0 has no meaning"):

@@ -70,5 +70,5 @@ def test_bad_input_is_refused() -> None:
         stickslip.timestep(1.0, 1e-300, law="gran/hertz/history")
     with pytest.raises(ValueError, match="0 impacts"):
         stickslip.timestep([], [])
-    with pytest.raises(ValueError, match='quantity = "eps"'):
+    with pytest.raises(ValueError, match="quantity = 'eps'; expected one of"):
         stickslip.timestep(1.0, 1.0, steps=[20]).largest_step(0.1, "eps")  # type: ignore[arg-type]

@@ -1,0 +1,66 @@
+"""Progress of long calls: reported to a callable, or shown on stderr."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeAlias
+
+#: Called with what is done, and with all that is known to be done.
+Report: TypeAlias = Callable[[int, int], object]
+#: A callable; True for a bar on stderr.
+Progress: TypeAlias = Report | bool
+#: Seconds between two texts of a line.
+_INTERVAL = 0.1
+
+
+def check(progress: Any) -> None:
+    """Refuses what is no progress."""
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        kind = type(progress).__name__
+        raise TypeError(f"progress is of type {kind}; expected a callable, or True for a bar")
+
+
+@contextmanager
+def reported(progress: Progress | None, what: str) -> Iterator[Report | None]:
+    """The callable that reports; with True a bar of tqdm, or a line where it is not installed."""
+    check(progress)
+    if not isinstance(progress, bool):
+        yield progress
+    elif not progress:
+        yield None
+    else:
+        try:
+            tqdm: Any = importlib.import_module("tqdm").tqdm
+        except ImportError:
+            yield from _line(what)
+        else:
+            with tqdm(desc=what, file=sys.stderr) as bar:
+                yield lambda done, steps: _advance(bar, done, steps)
+
+
+def _advance(bar: Any, done: int, steps: int) -> None:
+    bar.total = steps
+    bar.update(done - bar.n)
+
+
+def _line(what: str) -> Iterator[Report]:
+    """A line that is written again and again, and ended whatever happens."""
+    last = -_INTERVAL
+    text = f"{what}: nothing is done yet"
+
+    def report(done: int, steps: int) -> None:
+        nonlocal last, text
+        text = f"{what}: {done} of {steps}"
+        if time.monotonic() - last >= _INTERVAL:
+            last = time.monotonic()
+            sys.stderr.write(f"\r{text}")
+            sys.stderr.flush()
+
+    try:
+        yield report
+    finally:
+        sys.stderr.write(f"\r{text}\n")
