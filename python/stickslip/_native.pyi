@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _Floats: TypeAlias = NDArray[np.float64]
+_Report: TypeAlias = Callable[[int, int], object]
 _Engine: TypeAlias = tuple[str, float | None, float | None]
 _Law: TypeAlias = tuple[str, float]
 _Vector: TypeAlias = tuple[float, float, float]
@@ -110,6 +111,7 @@ class FormulaSystem:
         start: tuple[int | None, float | None, list[float] | None],
         end: float | None,
         threads: int,
+        progress: _Report | None = None,
     ) -> dict[str, Any]: ...
 
 def run_many(
@@ -121,6 +123,7 @@ def run_many(
     settings: dict[str, Any],
     times: list[float] | None,
     threads: int,
+    progress: _Report | None = None,
 ) -> dict[str, Any]: ...
 def homogeneous_mass(radius_m: float, density_kg_per_m3: float) -> float: ...
 
@@ -151,6 +154,7 @@ class Atlas:
         collisions: tuple[float, _Law],
         tolerance: float | None,
         threads: int,
+        progress: _Report | None = None,
     ) -> Atlas: ...
     @staticmethod
     def read(text: str) -> Atlas: ...
@@ -164,7 +168,7 @@ class Atlas:
 _Label: TypeAlias = tuple[str, list[int]]
 _MarginFields: TypeAlias = tuple[list[int], int, str, float]
 _Window: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
-_Calls: TypeAlias = tuple[Callable[[int, int], object] | None, Callable[[], object] | None]
+_Calls: TypeAlias = tuple[_Report | None, Callable[[], object] | None]
 
 @final
 class HybridFamily:
@@ -250,6 +254,7 @@ def gaining_lines(
     collisions: tuple[float, _Law],
     tolerance: float | None,
     threads: int,
+    progress: _Report | None = None,
 ) -> tuple[str, str | None]: ...
 def stack(
     kappa: tuple[float, float],
@@ -257,6 +262,7 @@ def stack(
     dampings: list[float],
     tolerance: float | None,
     threads: int,
+    progress: _Report | None = None,
 ) -> tuple[str, str, str | None]: ...
 @final
 class TimeSteps:
@@ -268,6 +274,7 @@ class TimeSteps:
         scheme: str,
         reduction: tuple[float, float],
         threads: int,
+        progress: _Report | None = None,
     ) -> TimeSteps: ...
     def json(self) -> str: ...
     def largest_step(self, quantity: str, wanted: float) -> float | None: ...
@@ -283,6 +290,7 @@ class Fit:
         speed: float | None,
         question: tuple[list[str], list[tuple[str, float, float]], float | None, float, bool],
         threads: int,
+        progress: _Report | None = None,
     ) -> Fit: ...
     def json(self) -> str: ...
     def picture(self) -> str | None: ...
@@ -297,6 +305,7 @@ class RestitutionTable:
         bound: float,
         regions: bool,
         threads: int,
+        progress: _Report | None = None,
     ) -> RestitutionTable: ...
     @staticmethod
     def make_of_velocities(
@@ -306,6 +315,7 @@ class RestitutionTable:
         bound: float,
         regions: bool,
         threads: int,
+        progress: _Report | None = None,
     ) -> RestitutionTable: ...
     @staticmethod
     def read(text: str) -> RestitutionTable: ...
@@ -325,15 +335,29 @@ class RestitutionTable:
     def eps_n(self, x: _Floats) -> _Floats: ...
     def region(self, x: _Floats, y: _Floats) -> NDArray[np.int64]: ...
 
-def asymptote(kappa: tuple[float, float], psi: list[float], threads: int) -> dict[str, Any]: ...
+def asymptote(
+    kappa: tuple[float, float],
+    psi: list[float],
+    threads: int,
+    progress: _Report | None = None,
+) -> dict[str, Any]: ...
 def converge(
-    contacts: list[tuple[float, float, float]] | None, damping: float, threads: int
+    contacts: list[tuple[float, float, float]] | None,
+    damping: float,
+    threads: int,
+    progress: _Report | None = None,
 ) -> dict[str, Any]: ...
 def contact_laws(
-    damping: float, tangential_damping: float, cells: int, threads: int
+    damping: float,
+    tangential_damping: float,
+    cells: int,
+    threads: int,
+    progress: _Report | None = None,
 ) -> dict[str, Any]: ...
 def reproduction_parts() -> list[str]: ...
-def reproduce(part: int, cells: int, threads: int) -> dict[str, Any]: ...
+def reproduce(
+    part: int, cells: int, threads: int, progress: _Report | None = None
+) -> dict[str, Any]: ...
 def run_hybrid(
     system: tuple[list[Any], list[Any], tuple[Any, Any]],
     args: tuple[Any, ...],

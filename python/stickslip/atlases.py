@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _laws, _native
 from stickslip._arrays import numbers
 from stickslip._laws import Law
+from stickslip._progress import Progress, reported
 from stickslip.collisions import Floats, _threads, psi_of_ratio
 
 if TYPE_CHECKING:
@@ -269,12 +270,14 @@ def trace(
     tangential_damping: float = 0.0,
     tolerance: float | None = None,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Atlas:
     """Every boundary in a window, and the regions between them, verified.
 
     kappa, psi: intervals, above 0. ratio: interval of g_t/g_n instead of psi, which mu and alpha
-    reduce. law, tangential_damping: as in `collide`. tolerance: accuracy of the boundaries in psi, from 1e-11 to 1e-9 times 1 + the largest
-    psi. If something speaks against the atlas, it says so in an AtlasWarning and in `objection`.
+    reduce. law, tangential_damping: as in `collide`. tolerance: accuracy of the
+    boundaries in psi, from 1e-11 to 1e-9 times 1 + the largest psi. progress: called now and then with
+    the steps done and all that are known; True shows a bar on stderr. If something speaks against the atlas, it says so in an AtlasWarning and in `objection`.
 
     >>> atlas = trace((5, 8), (0.8, 1.2))
     >>> atlas.locate([5.5, 7.5], [0.9, 1.1]).itinerary.tolist()
@@ -288,9 +291,10 @@ def trace(
         psi, interval = (low, high), (ratio, mu, alpha)
     assert psi is not None
     chosen = _laws.arguments(law, tangential_damping)
-    native = _native.Atlas.trace(
-        kappa, psi, interval, (damping, chosen), tolerance, _threads(threads)
-    )
+    with reported(progress, "trace") as report:
+        native = _native.Atlas.trace(
+            kappa, psi, interval, (damping, chosen), tolerance, _threads(threads), report
+        )
     atlas = Atlas(native)
     if atlas.objection is not None:
         warnings.warn(f"the atlas may be wrong: {atlas.objection}", AtlasWarning, stacklevel=2)

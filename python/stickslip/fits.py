@@ -17,6 +17,7 @@ from stickslip._axes import Panels
 from stickslip._kept import Kept
 from stickslip._laws import Law
 from stickslip._tabular import Columns, Tabular
+from stickslip._progress import Progress, reported
 from stickslip.collisions import _threads
 from stickslip.impacts import Bodies
 
@@ -119,6 +120,7 @@ def fit(
     damping: float = 0.0,
     tangential_damping: float = 0.0,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Fit:
     """Fits the stiffness and the friction of a contact law, or other numbers, to measured impacts.
 
@@ -130,7 +132,8 @@ def fit(
     the stiffness as kappa at normal incidence. eps_n: at normal incidence, decides the damping.
     level: of the intervals. relative_errors: use only the ratios of the errors, as without errors.
     law: the contact law; `Bodies` have their own. threads: 1 to 1024, or None for one for each core;
-    results do not depend on it.
+    results do not depend on it. progress: called now and then with the steps done and all that are
+    known; True shows a bar on stderr.
 
     Raises ValueError for bad data and parameters, and ComputationError where an impact has no result.
 
@@ -152,7 +155,9 @@ def fit(
     limits = [(name, float(low), float(high)) for name, (low, high) in (ranges or {}).items()]
     question = (list(free), limits, eps_n, float(level), bool(relative_errors))
     speed = None if speed_m_per_s is None else float(speed_m_per_s)
-    native = _native.Fit.make(columns, pair, scaled, speed, question, _threads(threads))
+    with reported(progress, "fit") as report:
+        count = _threads(threads)
+        native = _native.Fit.make(columns, pair, scaled, speed, question, count, report)
     return Fit(native)
 
 

@@ -22,6 +22,7 @@ from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._solutions import Names, Solution, event_array, solution_of, with_variables
+from stickslip._progress import Progress, reported
 from stickslip.collisions import _threads
 from stickslip.studies import Study, _study
 
@@ -172,11 +173,13 @@ class FormulaSystem:
         mode: str | None = None,
         parameters: Mapping[str, float] | None = None,
         threads: int | None = None,
+        progress: Progress | None = None,
     ) -> Study:
         """How accurate a run is: the errors of its last state and of the times of its events at
         tolerances from 1e-2 to 1e-13, with both methods, beside dop853 at 1e-15.
 
-        name: of the system in titles. The rest is as in `solve`. Raises ValueError if a name or a
+        name: of the system in titles. progress: called now and then with the steps done and all that
+        are known; True shows a bar on stderr. The rest is as in `solve`. Raises ValueError if a name or a
         value is wrong, and ComputationError if the reference cannot be computed.
 
         >>> import stickslip
@@ -188,7 +191,11 @@ class FormulaSystem:
         options = (1e-10, 1e-12, np.inf, None, 1)
         rerun = self._arguments((t_span, y0, mode), parameters, "dop853", options)
         values, begin, end, _ = rerun
-        return _study(self._native.converge(str(name), values, begin, end, _threads(threads)))
+        with reported(progress, f"converge {name}") as report:
+            found = self._native.converge(
+                str(name), values, begin, end, _threads(threads), report
+            )
+        return _study(found)
 
     def _arguments(
         self,

@@ -15,6 +15,7 @@ from stickslip._axes import svg
 from stickslip._laws import Law
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
+from stickslip._progress import Progress, reported
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
 
@@ -78,10 +79,11 @@ def gaining_lines(
     tangential_damping: float = 0.0,
     tolerance: float | None = None,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> GainingLines:
     """The lines in a window on which eps_t is 1 or -1, beyond which a law creates energy, verified.
 
-    kappa, psi, tolerance: as in `trace`. law, tangential_damping: as in `collide`. A line ends where
+    kappa, psi, tolerance, progress: as in `trace`. law, tangential_damping: as in `collide`. A line ends where
     the switches change, and another goes on there. If something speaks against the lines, it says
     so in an AtlasWarning and in `objection`.
 
@@ -90,9 +92,10 @@ def gaining_lines(
     [-1.0]
     """
     chosen = _laws.arguments(law, tangential_damping)
-    text, objection = _native.gaining_lines(
-        kappa, psi, (damping, chosen), tolerance, _threads(threads)
-    )
+    with reported(progress, "gaining_lines") as report:
+        text, objection = _native.gaining_lines(
+            kappa, psi, (damping, chosen), tolerance, _threads(threads), report
+        )
     document = json.loads(text)
     lines = tuple(
         GainingLine(one["eps_t"], one["gains_left"], np.array(one["points"], dtype=np.float64))

@@ -17,6 +17,7 @@ from stickslip._recorded import Recorded
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode
+from stickslip._progress import Progress, Report, reported
 from stickslip.collisions import _threads
 from stickslip.formulas import FormulaSystem
 from stickslip.hybrid import _arguments, _event_list, _Table
@@ -55,6 +56,7 @@ def solve_many(
     max_switches: int = 10_000_000,
     chunks: Chunks | None = None,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Dataset:
     """Runs a system for every combination of parameters and initial values.
 
@@ -147,7 +149,8 @@ def solve_many(
         _compare(recorded, *runs.rows(flat, int(np.prod(shape, dtype=int))), runs)
     if chunks is not None:
         return runs.lazy(arrays, (dims, shape), chunks, threads)
-    found = runs.compute(flat, int(np.prod(shape, dtype=int)), _threads(threads))
+    with reported(progress, "solve_many") as report:
+        found = runs.compute(flat, int(np.prod(shape, dtype=int)), _threads(threads), report)
     return runs.dataset(found, (dims, shape), arrays)
 
 
@@ -187,13 +190,15 @@ class _Runs:
             states[:, place] = flat[name]
         return rows, states
 
-    def compute(self, flat: Mapping[str, Any], count: int, threads: int) -> dict[str, Any]:
+    def compute(
+        self, flat: Mapping[str, Any], count: int, threads: int, report: Report | None = None
+    ) -> dict[str, Any]:
         """Makes so many runs."""
         rows, states = self.rows(flat, count)
         times = None if self.times is None else self.times.tolist()
         system, begin, end = self.system._native, self.begin, self.end
         return _native.run_many(
-            system, rows, states, begin, end, self.settings, times, threads
+            system, rows, states, begin, end, self.settings, times, threads, report
         )
 
     def results(self, found: dict[str, Any]) -> dict[str, tuple[tuple[str, ...], Any]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from stickslip import _native
+from stickslip._progress import Progress, reported
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import _threads
 
@@ -68,15 +69,18 @@ def stack(
     *,
     tolerance: float | None = None,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Stack:
     """Atlases at several dampings, and the dampings between them at which regions change.
 
     kappa, psi: intervals, above 0. damping: in ascending order, two above 0 or more, and 0 before
-    them or not. tolerance: as in `trace`. If something speaks against the result, it says so in an
+    them or not. tolerance, progress: as in `trace`. If something speaks against the result, it says so in an
     AtlasWarning and in `objection`.
     """
     dampings = [float(one) for one in damping]
-    text, svg, objection = _native.stack(kappa, psi, dampings, tolerance, _threads(threads))
+    with reported(progress, "stack") as report:
+        count = _threads(threads)
+        text, svg, objection = _native.stack(kappa, psi, dampings, tolerance, count, report)
     document = json.loads(text)
     layers = tuple(
         Layer(one["damping"], one["regions"], one["agrees"], one["as_stacked"])

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from stickslip import _native, _study_pictures
 from stickslip._shown import Shown, html_table
 from stickslip._tabular import Tabular
+from stickslip._progress import Progress, reported
 from stickslip.collisions import _threads
 
 if TYPE_CHECKING:
@@ -124,12 +125,16 @@ def asymptote(
     psi: Iterable[float] = (0.3, 1.0, 1.7),
     *,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Study:
     """The limit of stiff springs: how eps_t and the velocity vanish as kappa grows.
 
     kappa: interval within 3 to 1e10. psi: one to four impact ratios above 0 and below 2.
+    progress: called now and then with the steps done and all that are known; True shows a bar.
     """
-    return _study(_native.asymptote(kappa, list(psi), _threads(threads)))
+    with reported(progress, "asymptote") as report:
+        found = _native.asymptote(kappa, list(psi), _threads(threads), report)
+    return _study(found)
 
 
 def converge(
@@ -137,14 +142,17 @@ def converge(
     *,
     damping: float = 0.0,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Study:
     """How accurate the integrators are, at which cost.
 
     contacts: collisions (kappa, psi, damping) with kappa up to 1e6; without them the usual ones
-    with this damping.
+    with this damping. progress: as in `asymptote`.
     """
     given = None if contacts is None else [tuple(map(float, contact)) for contact in contacts]
-    return _study(_native.converge(given, damping, _threads(threads)))  # type: ignore[arg-type]
+    with reported(progress, "converge") as report:
+        found = _native.converge(given, damping, _threads(threads), report)  # type: ignore[arg-type]
+    return _study(found)
 
 
 def contact_laws(
@@ -153,16 +161,20 @@ def contact_laws(
     tangential_damping: float = 0.0,
     cells: int = 60,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Study:
     """What the contact laws of particle codes do, for kappa up to 30 and psi up to 3.
 
     Maps of every law without and with damping, its difference from the paper's law, the forces of
     a standard impact, and where its spring creates energy. tangential_damping is for the laws whose
     codes have it in this form. cells: columns and rows of maps, at most 1000.
+    progress: as in `asymptote`.
     """
     if not 1 <= cells <= 1000:
         raise ValueError(f"cells = {cells}; expected 1 to 1000")
-    found = _native.contact_laws(damping, tangential_damping, cells, _threads(threads))
+    with reported(progress, "contact_laws") as report:
+        count = _threads(threads)
+        found = _native.contact_laws(damping, tangential_damping, cells, count, report)
     return _study(found)
 
 

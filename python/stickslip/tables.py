@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native, _pictures
 from stickslip._arrays import real
 from stickslip._axes import svg
+from stickslip._progress import Progress, reported
 from stickslip.collisions import _threads
 from stickslip.impacts import Bodies
 
@@ -171,12 +172,14 @@ def table(
     bound: float = 1e-8,
     regions: bool = False,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> RestitutionTable:
     """Makes a table of eps_t whose error is below a bound everywhere.
 
     kappa, psi: intervals, above 0. bound: 1e-12 to 1e-3. regions: whether the table has the regions
     of the atlas too. threads: 1 to 1024, or None for one for each core; results do not depend on
-    it. The contact law is the paper's.
+    it. progress: called now and then with the steps done and all that are known; True shows a bar on
+    stderr. The contact law is the paper's.
 
     Raises ValueError for parameters out of range, and ComputationError where the bound is not
     reached.
@@ -186,9 +189,11 @@ def table(
     True
     """
     window = _interval(kappa), _interval(psi), float(damping)
-    return RestitutionTable(
-        _native.RestitutionTable.make(*window, float(bound), bool(regions), _threads(threads))
-    )
+    with reported(progress, "table") as report:
+        native = _native.RestitutionTable.make(
+            *window, float(bound), bool(regions), _threads(threads), report
+        )
+    return RestitutionTable(native)
 
 
 def table_of_velocities(
@@ -199,6 +204,7 @@ def table_of_velocities(
     bound: float = 1e-8,
     regions: bool = False,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> VelocityTable:
     """Makes a table of eps_t and eps_n of two bodies whose errors are below a bound everywhere.
 
@@ -221,11 +227,11 @@ def table_of_velocities(
     """
     window = _interval(normal_m_per_s), _interval(tangential_m_per_s)
     pair = (bodies if isinstance(bodies, Bodies) else Bodies.read(bodies))._pair
-    return VelocityTable(
-        _native.RestitutionTable.make_of_velocities(
-            pair, *window, float(bound), bool(regions), _threads(threads)
+    with reported(progress, "table_of_velocities") as report:
+        native = _native.RestitutionTable.make_of_velocities(
+            pair, *window, float(bound), bool(regions), _threads(threads), report
         )
-    )
+    return VelocityTable(native)
 
 
 def load_table(file: str | os.PathLike[str]) -> RestitutionTable | VelocityTable:

@@ -15,6 +15,7 @@ from stickslip._kept import Kept
 from stickslip._laws import Law
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
+from stickslip._progress import Progress, reported
 from stickslip.collisions import _broadcast, _threads
 
 if TYPE_CHECKING:
@@ -126,6 +127,7 @@ def timestep(
     mu: float = 0.4,
     alpha: float = 2 / 7,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> TimeSteps:
     """Errors of eps_t, eps_n and the energy in the time steps of a particle code.
 
@@ -134,7 +136,8 @@ def timestep(
     number of parts of a step after which a contact begins, 1 to 4096. scheme: "lammps", or
     "elapsed", in which the history advances in the first step by the time since the contact began.
     mu, alpha: weigh the tangential energy, and nothing else. threads: 1 to 1024, or None for one for
-    each core; results do not depend on it.
+    each core; results do not depend on it. progress: called now and then with the steps done and all
+    that are known; True shows a bar on stderr.
 
     Raises ValueError for parameters out of range, and ComputationError where an impact has no result
     without steps.
@@ -149,7 +152,10 @@ def timestep(
     chosen = _laws.arguments(law, tangential_damping)
     counts = ([float(one) for one in steps], phases)
     weights = (float(mu), float(alpha))
-    native = _native.TimeSteps.measure(flat, chosen, counts, scheme, weights, _threads(threads))
+    with reported(progress, "timestep") as report:
+        native = _native.TimeSteps.measure(
+            flat, chosen, counts, scheme, weights, _threads(threads), report
+        )
     return TimeSteps(native)
 
 

@@ -1,0 +1,67 @@
+"""Ctrl-C ends every long call, and long calls say how far they are."""
+
+import signal
+import threading
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import stickslip
+
+OSCILLATOR = "state x = 1\nstate v = 0\nx' = v\nv' = -1e6*x\nend = {}"
+
+# Each takes minutes, so that a deaf one would not come back within the time of the tests.
+LONG: dict[str, Callable[[], object]] = {
+    "trace": lambda: stickslip.trace((0.5, 60), (0.1, 3), 0.3),
+    "stack": lambda: stickslip.stack((1, 20), (0.1, 2.5), [0.05, 0.3, 0.35]),
+    "gaining_lines": lambda: stickslip.gaining_lines((1, 20), (0.1, 2.5), 0.3),
+    "table": lambda: stickslip.table((1, 40), (0.1, 3), 0.3, bound=1e-6),
+    "timestep": lambda: stickslip.timestep(
+        np.geomspace(10, 100, 100), 1.0, steps=[1000, 10_000], phases=100
+    ),
+    "collide_many": lambda: stickslip.collide_many(np.linspace(1e5, 1e6, 1_000_000), 1.0, 0.2),
+    "map": lambda: stickslip.map((1, 60), (0.1, 3), (4000, 4000), 0.2),
+    "solve": lambda: stickslip.system(OSCILLATOR.format(1e6)).solve(),
+    "sensitivities": lambda: stickslip.system(
+        "parameter k = 1e6\n" + OSCILLATOR.format(1e6).replace("1e6*x", "k*x")
+    ).sensitivities(["k"]),
+    "solve_many": lambda: stickslip.solve_many(
+        stickslip.system(OSCILLATOR.format(1000)), initial={"x": np.linspace(1, 2, 1000)}
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_ends_a_long_call(name: str) -> None:
+    press = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+    thread = threading.main_thread().ident
+    assert thread is not None
+    press.function = lambda *_: signal.pthread_kill(thread, signal.SIGINT)
+    press.start()
+    with pytest.raises(KeyboardInterrupt):
+        LONG[name]()
+
+
+def test_long_calls_report_their_progress() -> None:
+    def reports(call: Callable[..., object]) -> list[tuple[int, int]]:
+        found: list[tuple[int, int]] = []
+        call(progress=lambda done, steps: found.append((done, steps)))
+        return found
+
+    calls: list[Callable[..., object]] = [
+        lambda progress: stickslip.trace((5, 8), (0.8, 1.2), progress=progress),
+        lambda progress: stickslip.table((1, 2), (0.5, 1.5), bound=1e-5, progress=progress),
+        lambda progress: stickslip.timestep(3.0, 0.4, steps=[20, 100], progress=progress),
+        lambda progress: stickslip.asymptote((10, 100), [1.0], progress=progress),
+    ]
+    for call in calls:
+        *_, (done, steps) = reports(call)
+        assert 0 < done <= steps
+
+
+def test_an_exception_of_progress_ends_the_call() -> None:
+    def stop(done: int, steps: int) -> None:
+        raise RuntimeError(f"{done} of {steps} are enough")
+
+    with pytest.raises(RuntimeError, match="are enough"):
+        stickslip.trace((0.5, 60), (0.1, 3), 0.3, progress=stop)
