@@ -293,7 +293,9 @@ def variable_columns(variables: Named) -> list[Any]:
     return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
 
 
-def with_variables(found: dict[str, Any], variables: Named | None) -> tuple[list[Any], Columns, Columns]:
+def with_variables(
+    found: dict[str, Any], variables: Named | None
+) -> tuple[list[Any], Columns, Columns]:
     """Takes the variables, which are the last components, out of the states that were `found`. The
     result is their column of events, their values at the points, and those behind events."""
     if not variables:
