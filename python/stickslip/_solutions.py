@@ -182,6 +182,12 @@ class Solution(Tabular):
         ones, the first eight unless given. line: properties of all lines. Without `dense_output`, a
         run of formulas is repeated for the states between its steps, unless it is long. The result
         is the axes, one for each component.
+
+        >>> from stickslip import solve
+        >>> found = solve(lambda t, y: [y[1], -9.81], (0, 2), [4.905, 0.0], events=lambda t, y: y[0])
+        >>> height, speed = found.plot()
+        >>> height.get_ylabel(), height.get_legend().get_texts()[0].get_text()
+        ('y0', 'event 0')
         """
         return _solution_pictures.solution(self, ax, components, line)
 

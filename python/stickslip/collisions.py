@@ -234,6 +234,10 @@ class Collision(Tabular):
 
         ax: two axes, or one for both; without it, new ones. line: properties of the lines. The
         result is the axes of the forces and of the velocities.
+
+        >>> forces, velocities = collide(63, 0.5).plot()
+        >>> forces.get_ylabel(), velocities.get_xlabel()
+        ('scaled force', 'scaled time $t$')
         """
         return _pictures.collision(self, ax, line)
 
@@ -369,6 +373,10 @@ class Collisions(Tabular):
         on.
 
         Raises ImportError if xarray is not installed.
+
+        >>> found = collide_many([18.0, 63.0], [[0.5], [1.0]]).to_xarray()
+        >>> dict(found.sizes), int(found.switch_count.sel(kappa=63, psi=0.5))
+        ({'psi': 2, 'kappa': 2}, 6)
         """
         from stickslip.maps import ATTRIBUTES
 
