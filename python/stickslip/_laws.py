@@ -51,7 +51,8 @@ def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
     if law is None:
         law = "paper"
     if not isinstance(law, str | Mapping):
-        raise TypeError(f"law is of type {type(law).__name__}; expected a name, or a mapping of terms")
+        kind = type(law).__name__
+        raise TypeError(f"law is of type {kind}; expected a name, or a mapping of terms")
     text = law if isinstance(law, str) else json.dumps(dict(law), sort_keys=True)
     _check(text)
     return text, float(tangential_damping)
@@ -85,7 +86,8 @@ def _objection(text: str) -> str:
             values.setdefault(name, {})[value] = None
     for name, value in terms.items():
         if name not in values:
-            return f"law: {name!r} is no term; expected one of {_listed(values)}{_near(name, values)}"
+            listed = f"{_listed(values)}{_near(name, values)}"
+            return f"law: {name!r} is no term; expected one of {listed}"
         if isinstance(value, dict | list) or value not in values[name] or type(value) is int:
             listed = f"{_listed(values[name])}{_near(str(value), map(str, values[name]))}"
             return f"law: {name} = {value!r}; expected one of {listed}"

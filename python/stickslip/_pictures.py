@@ -84,9 +84,8 @@ def _shade(found: Collision, ax: Axes) -> None:
         (places,) = np.nonzero(kinds == kind)
         spans = list(zip(ends[places], np.diff(ends)[places], strict=True))
         if spans:
-            ax.broken_barh(
-                spans, (0, 1), transform=ax.get_xaxis_transform(), color=colour, zorder=0, label=name
-            )
+            whole = ax.get_xaxis_transform()
+            ax.broken_barh(spans, (0, 1), transform=whole, color=colour, zorder=0, label=name)
 
 
 def collisions(found: Collisions, ax: Axes | None, options: dict[str, Any]) -> Axes:
@@ -134,7 +133,7 @@ def counted(
     options: dict[str, Any],
     label: str | None = None,
 ) -> Axes:
-    """Points with the colours of numbers of switches, and a line through them if they are in order."""
+    """Points with the colours of numbers of switches, and a line if they are in order."""
     from matplotlib.ticker import MaxNLocator
 
     steps = np.diff(x)
@@ -148,7 +147,7 @@ def counted(
 
 
 def impacts(found: Impacts, ax: Axes | None, options: dict[str, Any]) -> Axes:
-    """Both restitutions over the angle of incidence, or over the velocity if it is the same for all."""
+    """Both restitutions over the angle of incidence, or over the velocity if all angles agree."""
     normal, tangential = found.normal_m_per_s.ravel(), found.tangential_m_per_s.ravel()
     angle = np.degrees(np.arctan2(tangential, normal))
     if angle.size > 1 and np.ptp(angle) < 1e-9:
@@ -204,10 +203,11 @@ def gaining(found: GainingLines, ax: Axes | None, line: dict[str, Any]) -> Axes:
     for each in found.lines:
         side = 90 if each.gains_left else -90
         place = 0 if each.eps_t > 0 else 1
+        value = f"$\\varepsilon_t = {each.eps_t:g}$"
         style: dict[str, Any] = {
             "color": COLOURS[place],
             "linestyle": "-",
-            "label": f"$\\varepsilon_t = {each.eps_t:g}$, energy is gained on the side of the ticks",
+            "label": f"{value}, energy is gained on the side of the ticks",
             "path_effects": [withTickedStroke(angle=side, length=0.6)],
         }
         ax.plot(each.points[:, 0], each.points[:, 1], **(style | line))

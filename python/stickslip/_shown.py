@@ -63,10 +63,11 @@ def html_table(columns: Mapping[str, Any], title: str) -> str:
     count = max((len(column) for column in columns.values()), default=0)
     cut = min(count, _ROWS)
     heads = "".join(f"<th>{escape(name)}</th>" for name in columns)
-    rows = "".join(
-        "<tr>" + "".join(f"<td>{escape(_cell(column[row]))}</td>" for column in columns.values()) + "</tr>"
+    cells = (
+        "".join(f"<td>{escape(_cell(column[row]))}</td>" for column in columns.values())
         for row in range(cut)
     )
+    rows = "".join(f"<tr>{one}</tr>" for one in cells)
     rest = f"<p>{count} rows, of which {cut} are shown</p>" if cut < count else ""
     table = f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
     return f"<h4>{escape(title)}</h4>{table}{rest}"

@@ -182,6 +182,12 @@ class Solution(Tabular):
         ones, the first eight unless given. line: properties of all lines. Without `dense_output`, a
         run of formulas is repeated for the states between its steps, unless it is long. The result
         is the axes, one for each component.
+
+        >>> from stickslip import solve
+        >>> found = solve(lambda t, y: [y[1], -9.81], (0, 2), [4.905, 0.0], events=lambda t, y: y[0])
+        >>> height, speed = found.plot()
+        >>> height.get_ylabel(), height.get_legend().get_texts()[0].get_text()
+        ('y0', 'event 0')
         """
         return _solution_pictures.solution(self, ax, components, line)
 
@@ -293,7 +299,9 @@ def variable_columns(variables: Named) -> list[Any]:
     return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
 
 
-def with_variables(found: dict[str, Any], variables: Named | None) -> tuple[list[Any], Columns, Columns]:
+def with_variables(
+    found: dict[str, Any], variables: Named | None
+) -> tuple[list[Any], Columns, Columns]:
     """Takes the variables, which are the last components, out of the states that were `found`. The
     result is their column of events, their values at the points, and those behind events."""
     if not variables:

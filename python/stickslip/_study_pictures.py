@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from stickslip.studies import Table
 
+_METHODS = ("method", "coordinates", "switches")
 #: What is drawn of a table unless it is said: x, y, and the columns that tell lines apart.
 _USUAL = {
     "asymptote_envelope": ("kappa", "w_final", ("psi",)),
@@ -21,8 +22,8 @@ _USUAL = {
     "asymptote_counts": ("kappa", "ratio", ("psi",)),
     "asymptote_profile": ("phase", "f", ()),
     "asymptote_convergence": ("start", "difference", ("coefficients",)),
-    "convergence_steps": ("step", "velocity_error", ("method", "coordinates", "switches")),
-    "convergence_tolerances": ("tolerance", "velocity_error", ("method", "coordinates", "switches")),
+    "convergence_steps": ("step", "velocity_error", _METHODS),
+    "convergence_tolerances": ("tolerance", "velocity_error", _METHODS),
 }
 #: The same of a system of the user, by the columns that its tables have.
 _USUAL_OF_SYSTEMS = {"convergence_tolerances": ("tolerance", "state_error", ("method",))}

@@ -200,8 +200,8 @@ class Mode:
         >>> empties = tank.mode("empties", lambda t, y: -y)
         >>> empties.at("dose", [0.0, 1.0], reset=lambda t, y: y + 1.0)
         Mode('empties', guards: 'dose')
-        >>> round(float(solve(tank, (0.0, 2.0), [0.0]).y[0, -1]), 12)
-        0.503214724408
+        >>> round(float(solve(tank, (0.0, 2.0), [0.0]).y[0, -1]), 9)
+        0.503214724
         """
         listed = np.atleast_1d(real("times", times)).tolist()
         return self._clock(name, listed, to, reset, transition, terminal, priority, sets)
@@ -271,7 +271,7 @@ class HybridSystem:
     >>> fly = ball.mode("fly", lambda t, y: [y[1], -9.81])
     >>> fly.guard("floor", lambda t, y: y[0], reset=lambda t, y: [0.0, -0.5 * y[1]])
     Mode('fly', guards: 'floor')
-    >>> found = solve(ball, (0.0, 2.5), [4.905, 0.0])
+    >>> found = solve(ball, (0.0, 2.4), [4.905, 0.0])
     >>> found.t_events[0].round(12)
     array([1., 2.])
 
@@ -283,8 +283,8 @@ class HybridSystem:
     >>> room.guard("warm", lambda t, y, now: 2.0 - y, direction="falling", sets={"on": 0.0})
     Mode('room', guards: 'warm')
     >>> found = solve(heater, (0.0, 2.0), [0.0])
-    >>> float(found.t_events[0][0].round(12)), found.variables["on"][-1]
-    (1.098612288668, np.float64(0.0))
+    >>> float(found.t_events[0][0].round(9)), float(found.variables["on"][-1])
+    (1.098612289, 0.0)
 
     sliding: up to 4 surfaces, each a function h(t, y) whose zero it is. Right-hand sides get the
     signs of these functions, each +1 or -1, as a named tuple after time, state and variables. The

@@ -234,6 +234,10 @@ class Collision(Tabular):
 
         ax: two axes, or one for both; without it, new ones. line: properties of the lines. The
         result is the axes of the forces and of the velocities.
+
+        >>> forces, velocities = collide(63, 0.5).plot()
+        >>> forces.get_ylabel(), velocities.get_xlabel()
+        ('scaled force', 'scaled time $t$')
         """
         return _pictures.collision(self, ax, line)
 
@@ -369,6 +373,10 @@ class Collisions(Tabular):
         on.
 
         Raises ImportError if xarray is not installed.
+
+        >>> found = collide_many([18.0, 63.0], [[0.5], [1.0]]).to_xarray()
+        >>> dict(found.sizes), int(found.switch_count.sel(kappa=63, psi=0.5))
+        ({'psi': 2, 'kappa': 2}, 6)
         """
         from stickslip.maps import ATTRIBUTES
 
@@ -409,8 +417,9 @@ class Collisions(Tabular):
         return _pictures.collisions(self, ax, points)
 
     def _repr_svg_(self) -> str | None:
-        alone = self.size < 2 or all(np.ptp(one) > 0 for one in (self.kappa, self.psi, self.damping))
-        return None if alone else svg(self.plot)
+        given = (self.kappa, self.psi, self.damping)
+        unfit = self.size < 2 or all(np.ptp(one) > 0 for one in given)
+        return None if unfit else svg(self.plot)
 
     def __repr__(self) -> str:
         return f"Collisions(shape={self.shape}, failures={len(self.failures)})"
@@ -421,8 +430,8 @@ _NUMBERS = ("kappa", "psi", "damping", "eps_n", "eps_t", "w_final", "contact_tim
 
 
 def _varies(values: NDArray[Any], axis: int) -> bool:
-    """Whether values change along an axis."""
-    return bool((values != values.take([0], axis)).any()) if values.shape[axis] else False
+    """Whether values change along an axis, or there are none."""
+    return not values.shape[axis] or bool((values != values.take([0], axis)).any())
 
 
 def _dimensions(given: dict[str, NDArray[Any]], shape: tuple[int, ...]) -> tuple[str, ...]:

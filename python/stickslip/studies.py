@@ -62,6 +62,12 @@ class Table(Tabular, Shown):
         have usual ones. by: columns that tell lines apart. line: properties of all lines.
 
         Raises ValueError if there is no such column, or if none are usual and none are given.
+
+        >>> import stickslip
+        >>> study = stickslip.system("state x = 1\\nx' = -x\\nwhen x < 0.5\\nend = 2").converge()
+        >>> axes = study.tables["convergence_tolerances"].plot(x="steps", y="time_error")
+        >>> axes.get_xlabel()
+        'steps: accepted steps'
         """
         return _study_pictures.table(self, ax, (x, y, by), line)
 

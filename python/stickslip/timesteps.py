@@ -89,7 +89,8 @@ class TimeSteps(Tabular):
         }
         for quantity in get_args(Quantity):
             errors = getattr(self, quantity)
-            columns |= {f"{quantity}_{one.name}": getattr(errors, one.name) for one in fields(errors)}
+            names = [one.name for one in fields(errors)]
+            columns |= {f"{quantity}_{name}": getattr(errors, name) for name in names}
         return columns
 
     def plot(self, ax: Axes | None = None, **line: Any) -> Axes:

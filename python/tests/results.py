@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 
 import stickslip
-from stickslip import Bodies, Guard, HybridFamily, HybridSystem, Itinerary, Material, Sphere, Surface
+from stickslip import (
+    Bodies,
+    Guard,
+    HybridFamily,
+    HybridSystem,
+    Itinerary,
+    Material,
+    Sphere,
+    Surface,
+)
 from stickslip._family_options import TraceOptions, VerifyOptions
 
 LAW = "gran/hertz/history"
@@ -121,7 +130,9 @@ MADE: dict[str, Callable[[], Any]] = {
     "FamilyLayer": lambda: of("FamilyStack").layers[0],
     "FamilyVertex": lambda: of("FamilyAtlas").vertices[0],
     "Fit": _fit,
-    "Followed": lambda: family().follow(*WINDOW, [(0.6, 0.55), (1.9, 0.75)], [lambda p, q: q - 0.65]),
+    "Followed": lambda: family().follow(
+        *WINDOW, [(0.6, 0.55), (1.9, 0.75)], [lambda p, q: q - 0.65]
+    ),
     "FormulaSystem": lambda: stickslip.system(BALL),
     "GainingLine": lambda: of("GainingLines").lines[0],
     "GainingLines": _gaining_lines,

@@ -260,6 +260,7 @@ def test_arrays_of_collisions_keep_their_shape() -> None:
     together = stickslip.collide_many(kappa, np.sqrt(kappa)).to_xarray()
     assert dict(together.sizes) == {"dim_0": 4} and together["psi"].dims == ("dim_0",)
     assert dict(stickslip.collide_many(3.0, 0.5).to_xarray().sizes) == {}
+    assert dict(stickslip.collide_many([], 0.5).to_xarray().sizes) == {"dim_0": 0}
 
 
 def test_missing_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
