@@ -275,9 +275,10 @@ def trace(
     """Every boundary in a window, and the regions between them, verified.
 
     kappa, psi: intervals, above 0. ratio: interval of g_t/g_n instead of psi, which mu and alpha
-    reduce. law, tangential_damping: as in `collide`. tolerance: accuracy of the
-    boundaries in psi, from 1e-11 to 1e-9 times 1 + the largest psi. progress: called now and then with
-    the steps done and all that are known; True shows a bar on stderr. If something speaks against the atlas, it says so in an AtlasWarning and in `objection`.
+    reduce. law, tangential_damping: as in `collide`. tolerance: accuracy of the boundaries in psi,
+    from 1e-11 to 1e-9 times 1 + the largest psi. progress: called now and then with the steps done
+    and all that are known; True shows a bar on stderr. If something speaks against the atlas, it
+    says so in an AtlasWarning and in `objection`.
 
     >>> atlas = trace((5, 8), (0.8, 1.2))
     >>> atlas.locate([5.5, 7.5], [0.9, 1.1]).itinerary.tolist()

@@ -451,9 +451,9 @@ def trace_family(
     doubt. If anything speaks against the atlas, it says so in an AtlasWarning and in `objection`.
 
     threads: for recorded and compiled functions, 1 to 1024, or None for one for each core; results
-    have the same bits with any number. Other functions of Python are called on this thread, one after the other. Their
-    exceptions end the trace and come out as they are, with a note that has the parameters; NaN says
-    that a run has no value there, and fails.
+    have the same bits with any number. Other functions of Python are called on this thread, one
+    after the other. Their exceptions end the trace and come out as they are, with a note that has
+    the parameters; NaN says that a run has no value there, and fails.
 
     progress(done, steps): called now and then with the steps that are done, and those of all stages
     that have begun; more may come. True shows a bar on stderr. cancelled(): asked

@@ -96,12 +96,13 @@ def stack_family(
 
     family: returns the `HybridFamily` at a value between the first and the last one. It is called
     for hundreds of values, or thousands: first on this thread, then on the one that traces. The
-    systems must be defined a hundredth of the window beyond its edges, have the same guards, depend on the value as smoothly as on the two parameters, and all be compiled if the
-    first one is. values: two or more, in ascending order. x, y, options, verify, tolerance, rounds,
-    threads, progress, cancelled: as in `trace_family`, for every atlas; boundaries are followed up
-    to the window's edges only, and `progress` counts atlases. The first Ctrl-C raises
-    StackInterrupted, whose `stack` has what was found; a second one ends the run that is under way,
-    and nothing is kept.
+    systems must be defined a hundredth of the window beyond its edges, have the same guards, depend
+    on the value as smoothly as on the two parameters, and all be compiled if the first one is.
+    values: two or more, in ascending order. x, y, options, verify, tolerance, rounds, threads,
+    progress, cancelled: as in `trace_family`, for every atlas; boundaries are followed up to the
+    window's edges only, and `progress` counts atlases. The first Ctrl-C raises StackInterrupted,
+    whose `stack` has what was found; a second one ends the run that is under way, and nothing is
+    kept.
 
     width: of the bracket of a change, as a part of the greater one of its two values, from 1e-9 to
     0.1. It is wider where atlases are in doubt, or where a region is too small to be seen before it

@@ -178,9 +178,9 @@ class FormulaSystem:
         """How accurate a run is: the errors of its last state and of the times of its events at
         tolerances from 1e-2 to 1e-13, with both methods, beside dop853 at 1e-15.
 
-        name: of the system in titles. progress: called now and then with the steps done and all that
-        are known; True shows a bar on stderr. The rest is as in `solve`. Raises ValueError if a name or a
-        value is wrong, and ComputationError if the reference cannot be computed.
+        name: of the system in titles. progress: called now and then with the steps done and all
+        that are known; True shows a bar on stderr. The rest is as in `solve`. Raises ValueError if
+        a name or a value is wrong, and ComputationError if the reference cannot be computed.
 
         >>> import stickslip
         >>> decay = stickslip.system("state x = 1\\nx' = -x\\nwhen x < 0.5\\nend = 2")

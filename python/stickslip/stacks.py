@@ -74,8 +74,8 @@ def stack(
     """Atlases at several dampings, and the dampings between them at which regions change.
 
     kappa, psi: intervals, above 0. damping: in ascending order, two above 0 or more, and 0 before
-    them or not. tolerance, progress: as in `trace`. If something speaks against the result, it says so in an
-    AtlasWarning and in `objection`.
+    them or not. tolerance, progress: as in `trace`. If something speaks against the result, it says
+    so in an AtlasWarning and in `objection`.
     """
     dampings = [float(one) for one in damping]
     with reported(progress, "stack") as report:

@@ -20,6 +20,7 @@
 //! - [`atlas`]: boundaries and regions, traced and verified
 //! - [`mod@stack`]: atlases over the damping, and what changes between them
 //! - [`gaining`]: where |ε_t| is above 1
+//! - `sealed`: documents with digests, so that a reader notices what has changed
 //!
 //! ```
 //! use stickslip_plane::atlas::{Frame, trace};
@@ -46,6 +47,8 @@ pub mod grid;
 pub mod oblique;
 pub mod progress;
 pub mod range;
+#[cfg(feature = "serde")]
+pub mod sealed;
 pub mod sheet;
 pub mod stack;
 pub mod sweep;

@@ -8,6 +8,7 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::Report;
+use stickslip_plane::sealed;
 
 use crate::arrays::{expect_equal, numbers};
 use crate::background::watched;
@@ -65,6 +66,7 @@ impl Atlas {
                 let schema = &value["schema"];
                 return Err(format!("schema is {schema}; expected {SCHEMA:?}"));
             }
+            sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
             let document: Document = serde_json::from_str(text).map_err(|e| e.to_string())?;
             let atlas = document.clone().try_into();
             let atlas = atlas.map_err(|e: atlas::DocumentError| e.to_string())?;
@@ -75,7 +77,7 @@ impl Atlas {
 
     /// The document of the atlas as JSON.
     fn json(&self) -> PyResult<String> {
-        serde_json::to_string(&self.document).map_err(failed)
+        sealed::to_string(&self.document).map_err(failed)
     }
 
     /// The atlas as GeoJSON.

@@ -5,6 +5,7 @@ use stickslip_figure::pictures;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::progress::Report;
+use stickslip_plane::sealed;
 use stickslip_plane::stack::{DampingStackError, StackDocument, stack as stacked};
 
 use crate::background::watched;
@@ -30,6 +31,6 @@ pub fn stack(
         DampingStackError::Dampings { .. } => bad_input(error),
         DampingStackError::Atlas { source, .. } => of_atlas(&source),
     })?;
-    let json = serde_json::to_string(&StackDocument::from(&made)).map_err(failed)?;
+    let json = sealed::to_string(&StackDocument::from(&made)).map_err(failed)?;
     Ok((json, pictures::stack::draw(&made).document(), made.objection()))
 }

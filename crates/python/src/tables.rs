@@ -2,8 +2,8 @@
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use stickslip_plane::Range;
 use stickslip_plane::progress::Report;
+use stickslip_plane::{Range, sealed};
 use stickslip_practice::tables::{
     self, Document, SCHEMA, Settings, Table, TableError, Verification, Window,
 };
@@ -64,6 +64,7 @@ impl RestitutionTable {
     #[staticmethod]
     fn read(py: Python<'_>, text: &str) -> PyResult<Self> {
         py.detach(|| {
+            sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
             let document: Document = serde_json::from_str(text)
                 .map_err(|error| format!("expected a file of schema {SCHEMA:?}: {error}"))?;
             Table::try_from(document).map(Self).map_err(|error| error.to_string())
@@ -73,7 +74,7 @@ impl RestitutionTable {
 
     /// The document of the table as JSON.
     fn json(&self) -> PyResult<String> {
-        serde_json::to_string(&Document::from(&self.0)).map_err(failed)
+        sealed::to_string(&Document::from(&self.0)).map_err(failed)
     }
 
     /// The table as a header for C.

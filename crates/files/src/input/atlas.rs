@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use stickslip_plane::atlas::{Atlas, Document, SCHEMA};
+use stickslip_plane::sealed;
 use stickslip_solver::Margin;
 use stickslip_tracer::Itinerary;
 
@@ -47,6 +48,7 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     let unusable = |reason: String| FileError::input(source::shown(path), reason);
     let text = source::read(path, MOST_BYTES)?;
     let Schema { schema } = json::parse(&text).map_err(unusable)?;
+    sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
     if schema == stickslip_tracer::SCHEMA {
         let document: stickslip_tracer::Document<Itinerary, Margin> =
             json::parse(&text).map_err(unusable)?;

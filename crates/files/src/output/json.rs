@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use stickslip_model::{Engine, Estimate, document};
+use stickslip_plane::sealed;
 use stickslip_solver::Statistics;
 
 /// Writes `result` as one [`document`] with the layout `schema`, and ends the line.
@@ -28,6 +29,16 @@ pub fn write(
 pub fn lines(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, value)?;
     writeln!(out)
+}
+
+/// `document` as JSON on one line, which is ended. Its fields have digests, see [`sealed`].
+///
+/// # Errors
+/// `document` is not an object of JSON.
+pub fn sealed_line(document: &impl Serialize) -> io::Result<Vec<u8>> {
+    let mut line = sealed::to_string(document)?.into_bytes();
+    line.push(b'\n');
+    Ok(line)
 }
 
 /// `value` as JSON on one line, which is ended.

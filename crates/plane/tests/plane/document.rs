@@ -1,5 +1,5 @@
 use stickslip_model::Reduction;
-use stickslip_plane::Range;
+use stickslip_plane::{Range, sealed};
 use stickslip_plane::atlas::{
     Atlas, BoundaryEnd, Document, DocumentError, Frame, MismatchFields, RatioRange, SCHEMA,
     VerifiedAtlas,
@@ -256,4 +256,33 @@ fn regions_that_the_boundaries_do_not_make_are_refused() {
     });
     assert_eq!(error, DocumentError::Region { region: 3 });
     assert_eq!(text, "regions[3] is not what the boundaries around it say");
+}
+
+#[test]
+fn a_sealed_document_that_has_changed_is_noticed_wherever_it_has() {
+    let text = sealed::to_string(&Document::new(crossing())).unwrap();
+    assert_eq!(sealed::check(text.as_bytes()), Ok(()));
+    // The layout of the text does not matter.
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(sealed::check(serde_json::to_string_pretty(&value).unwrap().as_bytes()), Ok(()));
+    assert_eq!(value["digests"].as_object().unwrap().len(), value.as_object().unwrap().len() - 1);
+    let mut documents = 0;
+    // Another digit, letter or mark: the text is no document any more, the same one, or refused.
+    for place in (0..text.len()).step_by(7) {
+        let mut bytes = text.clone().into_bytes();
+        bytes[place] = if bytes[place] == b'7' { b'4' } else { b'7' };
+        let Ok(changed) = serde_json::from_slice::<serde_json::Value>(&bytes) else { continue };
+        documents += 1;
+        let same = changed == value || changed.get("digests").is_none();
+        assert_eq!(sealed::check(&bytes).is_ok(), same, "at byte {place}");
+    }
+    assert!(documents > 100, "{documents} documents");
+    let mut more = value.clone();
+    more["note"] = "checked by hand".into();
+    let damaged = sealed::check(more.to_string().as_bytes()).unwrap_err();
+    assert_eq!(damaged.field, "note");
+    let mut less = value;
+    less.as_object_mut().unwrap().remove("extrema");
+    let damaged = sealed::check(less.to_string().as_bytes()).unwrap_err();
+    assert_eq!(damaged.field, "extrema");
 }

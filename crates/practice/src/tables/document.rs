@@ -12,7 +12,6 @@ pub const SCHEMA: &str = "stickslip.table/1";
 
 /// A table as its JSON has it. See [`Table`] for the fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "the fields are those of a table")]
 pub struct Document {
     /// [`SCHEMA`].

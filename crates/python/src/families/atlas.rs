@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use serde_json::Value;
 use stickslip_figure::pictures::family::draw_runs;
+use stickslip_plane::sealed;
 use stickslip_solver::{Margin, Place};
 use stickslip_tracer::{
     Atlas, AtlasOptions, Document, End, Followed, Itinerary, Location, Point, SCHEMA, SpecialPoint,
@@ -67,6 +68,7 @@ impl FamilyAtlas {
             if value["schema"] != SCHEMA {
                 return Err(format!("schema is {}; expected {SCHEMA:?}", value["schema"]));
             }
+            sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
             let document: Document<Itinerary, Margin> =
                 serde_json::from_str(text).map_err(|error| error.to_string())?;
             let Document { family, axes, guards, options, .. } = document.clone();
@@ -82,7 +84,7 @@ impl FamilyAtlas {
         py.detach(|| {
             let mut document = Document::new(&self.atlas, &self.options, family, [x, y]);
             document.guards.clone_from(guards);
-            serde_json::to_string(&document)
+            sealed::to_string(&document)
         })
         .map_err(failed)
     }
