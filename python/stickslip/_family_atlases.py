@@ -1,5 +1,7 @@
 """Atlases of families: what `trace_family` returns."""
 
+from __future__ import annotations
+
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -11,8 +13,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _atlas_results, _native
 from stickslip._arrays import numbers
+from stickslip._progress import Progress, reported
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats, _threads
 
 if TYPE_CHECKING:
@@ -20,7 +25,6 @@ if TYPE_CHECKING:
 
     from stickslip.families import HybridFamily
 
-Progress: TypeAlias = Callable[[int, int], object]
 Cancelled: TypeAlias = Callable[[], object]
 
 #: Colours and dashes of boundaries by the place of their margin, as in the picture.
@@ -63,8 +67,8 @@ class FamilyMargin:
     place: str
 
 
-@dataclass(frozen=True)
-class FamilyCurve:
+@dataclass(frozen=True, repr=False)
+class FamilyCurve(Shown):
     """A curve on which the itinerary changes, between two vertices."""
 
     id: int
@@ -143,12 +147,15 @@ class FamilyLocated:
 class TraceInterrupted(KeyboardInterrupt):
     """Ctrl-C during a trace. `atlas` has what was found, and `atlas.resume` goes on."""
 
-    def __init__(self, atlas: "FamilyAtlas") -> None:
+    def __init__(self, atlas: FamilyAtlas) -> None:
         super().__init__("the trace was interrupted")
         self.atlas = atlas
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (TraceInterrupted, (self.atlas,))
 
-class FamilyAtlas:
+
+class FamilyAtlas(Tabular):
     """The boundaries and regions of a family in a window, from `trace_family` or `load`."""
 
     def __init__(self, native: _native.FamilyAtlas) -> None:
@@ -158,7 +165,7 @@ class FamilyAtlas:
         return (_read, (self._native.json(),))
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str]) -> "FamilyAtlas":
+    def load(cls, file: str | os.PathLike[str]) -> FamilyAtlas:
         """The atlas in a file that `save` has written, or Rust's `tracer::Document`."""
         return _read(Path(file).read_text(encoding="utf-8"))
 
@@ -174,12 +181,12 @@ class FamilyAtlas:
 
     def resume(
         self,
-        family: "HybridFamily",
+        family: HybridFamily,
         *,
         threads: int | None = None,
         progress: Progress | None = None,
         cancelled: Cancelled | None = None,
-    ) -> "FamilyAtlas":
+    ) -> FamilyAtlas:
         """Goes on with an atlas that was cancelled, to the same bits as without interruption.
 
         family: the same one. One that is finished is returned as it is. The other arguments are
@@ -187,8 +194,9 @@ class FamilyAtlas:
         """
         from stickslip.families import _finish
 
-        calls = (progress, cancelled)
-        return _finish(family._native.resume(self._native, _threads(threads), calls))
+        with reported(progress, f"trace of {self.family}") as report:
+            calls = (report, cancelled)
+            return _finish(family._native.resume(self._native, _threads(threads), calls))
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -324,7 +332,7 @@ class FamilyAtlas:
         )
 
     def decide(
-        self, family: "HybridFamily", x: ArrayLike, y: ArrayLike, *, threads: int | None = None
+        self, family: HybridFamily, x: ArrayLike, y: ArrayLike, *, threads: int | None = None
     ) -> NDArray[np.object_]:
         """The itinerary at every point: by a run of the family within the error of a curve or of
         the window's edge, and in regions in doubt. None outside the window. x and y broadcast.
@@ -334,7 +342,7 @@ class FamilyAtlas:
         found = family._native.decide(self._native, x, y, _threads(threads))
         return _objects([one and _label(one, family.guards) for one in found], shape)
 
-    def plot(self, ax: "Axes | None" = None, *, labels: bool = True, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, *, labels: bool = True, **line: Any) -> Axes:
         """Draws the curves with matplotlib, and the number of events in large regions.
 
         ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
@@ -358,6 +366,9 @@ class FamilyAtlas:
                     ax.annotate(text, region.sample, ha="center", va="center")
         ax.set(xlim=(left, right), ylim=(bottom, top), xlabel=self.axes[0], ylabel=self.axes[1])
         return ax
+
+    def _columns(self) -> Columns:
+        return _atlas_results.regions(self)
 
     def picture(self) -> str:
         """The curves with the number of events in each region, as an SVG document."""

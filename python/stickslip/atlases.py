@@ -1,5 +1,7 @@
 """Atlases: every boundary in a window of the (kappa, psi) plane, and the regions between them."""
 
+from __future__ import annotations
+
 import json
 import os
 import warnings
@@ -12,10 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _laws, _native
+from stickslip import _atlas_results, _laws, _native
 from stickslip._arrays import numbers
 from stickslip._laws import Law
 from stickslip._progress import Progress, reported
+from stickslip._shown import Shown
+from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats, _threads, psi_of_ratio
 
 if TYPE_CHECKING:
@@ -34,8 +38,8 @@ class AtlasWarning(UserWarning):
     """An atlas is complete, but may be wrong."""
 
 
-@dataclass(frozen=True)
-class Boundary:
+@dataclass(frozen=True, repr=False)
+class Boundary(Shown):
     """A curve on which the switches of a collision change."""
 
     id: int
@@ -96,7 +100,7 @@ class Located:
     distance: Floats
 
 
-class Atlas:
+class Atlas(Tabular):
     """The subdivision of a window, from `trace` or `Atlas.load`."""
 
     def __init__(self, native: _native.Atlas) -> None:
@@ -106,7 +110,7 @@ class Atlas:
         return (_read, (self._native.json(),))
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str]) -> "Atlas":
+    def load(cls, file: str | os.PathLike[str]) -> Atlas:
         """The atlas in a file that `save` or `stickslip trace` has written."""
         return _read(Path(file).read_text(encoding="utf-8"))
 
@@ -210,7 +214,7 @@ class Atlas:
         found: dict[str, Any] = json.loads(self._native.geojson())
         return found
 
-    def plot(self, ax: "Axes | None" = None, *, labels: bool = True, **line: Any) -> "Axes":
+    def plot(self, ax: Axes | None = None, *, labels: bool = True, **line: Any) -> Axes:
         """Draws the boundaries with matplotlib, and the number of switches in large regions.
 
         ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
@@ -241,6 +245,9 @@ class Atlas:
             ylabel=r"impact ratio $\psi$",
         )
         return ax
+
+    def _columns(self) -> Columns:
+        return _atlas_results.regions(self)
 
     def picture(self) -> str:
         """The boundaries with the number of switches in each region, as an SVG document."""

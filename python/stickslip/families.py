@@ -30,7 +30,6 @@ from stickslip._family_atlases import (
     FamilyRegion,
     FamilyVertex,
     Itinerary,
-    Progress,
     TraceInterrupted,
     Unresolved,
     _label,
@@ -39,7 +38,7 @@ from stickslip._family_atlases import (
     _pairs,
 )
 from stickslip._family_options import TraceOptions, VerifyOptions, _json
-from stickslip._progress import check, reported
+from stickslip._progress import Progress, check, reported
 from stickslip._recorded import Recorded
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular, flat
@@ -437,7 +436,7 @@ def trace_family(
     tolerance: float = 1e-9,
     rounds: int = 8,
     threads: int | None = None,
-    progress: Progress | bool | None = None,
+    progress: Progress | None = None,
     cancelled: Cancelled | None = None,
 ) -> FamilyAtlas:
     """Every curve in a window of the parameters on which the itinerary of the runs changes, and the

@@ -1,20 +1,26 @@
 """Stacks of families: atlases over a third parameter."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip import _native
+from stickslip import _atlas_results, _native
 from stickslip._compiled import _count, _number
-from stickslip._family_atlases import Cancelled, FamilyAtlas, Itinerary, Progress, _label
+from stickslip._family_atlases import Cancelled, FamilyAtlas, Itinerary, _label
 from stickslip._family_options import TraceOptions, VerifyOptions
+from stickslip._progress import Progress, reported
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import _threads
 from stickslip.families import HybridFamily, _check_calls, _survey
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -62,6 +68,10 @@ class FamilyStack:
     #: What speaks against the stack; None if nothing does.
     objection: str | None
 
+    def plot(self, ax: Axes | None = None, name: str = "value", **line: Any) -> Axes:
+        """Draws the number of regions over the third parameter, called `name`, with matplotlib."""
+        return _atlas_results.stack(self, ax, line, name)
+
     def __repr__(self) -> str:
         text = f"FamilyStack: {len(self.layers)} layers, {len(self.changes)} changes"
         return text if self.finished else f"{text}, not finished"
@@ -73,6 +83,9 @@ class StackInterrupted(KeyboardInterrupt):
     def __init__(self, stack: FamilyStack) -> None:
         super().__init__("the stack was interrupted")
         self.stack = stack
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (StackInterrupted, (self.stack,))
 
 
 def stack_family(
@@ -136,10 +149,10 @@ def stack_family(
         return found._native
 
     search = (text, width, _count(atlases, "atlases"))
-    calls = (progress, cancelled)
-    planes, changes, count, finished, objection, error = _native.stack_family(
-        member, window, heights.tolist(), search, _threads(threads), calls
-    )
+    with reported(progress, "stack") as report:
+        planes, changes, count, finished, objection, error = _native.stack_family(
+            member, window, heights.tolist(), search, _threads(threads), (report, cancelled)
+        )
     rows = zip(heights.tolist(), planes, strict=False)
     layers = [FamilyLayer(value, FamilyAtlas(plane)) for value, plane in rows]
     guards = layers[0].atlas._guards if layers else []

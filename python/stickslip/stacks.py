@@ -1,15 +1,21 @@
 """Stacks: atlases over the damping, and where regions are born, split, merge and die."""
 
+from __future__ import annotations
+
 import json
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from stickslip import _native
+from stickslip import _atlas_results, _native
 from stickslip._progress import Progress, reported
+from stickslip._shown import Shown
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import _threads
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -45,8 +51,8 @@ class Change:
     effects: tuple[tuple[str, str], ...]
 
 
-@dataclass(frozen=True)
-class Stack:
+@dataclass(frozen=True, repr=False)
+class Stack(Shown):
     """Atlases at several dampings, and the changes between them, from `stack`."""
 
     #: The object that `stickslip stack` writes.
@@ -57,6 +63,10 @@ class Stack:
     objection: str | None
     #: The picture as SVG.
     svg: str
+
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the number of regions over the damping with matplotlib, and where it changes."""
+        return _atlas_results.stack(self, ax, line)
 
     def _repr_svg_(self) -> str:
         return self.svg
