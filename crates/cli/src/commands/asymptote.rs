@@ -42,7 +42,7 @@ pub fn run(arguments: &AsymptoteArguments) -> Result<(), Failure> {
     let AsymptoteArguments { kappa, psi, out, threads } = arguments;
     let settings = Settings { kappa: *kappa, psi: psi.clone() };
     settings.validate().map_err(study::refused)?;
-    study::run(out, threads.threads, |report| stiff_springs::run(&settings, report))
+    study::run(out, *threads, |report| stiff_springs::run(&settings, report))
 }
 
 /// What `asymptote --help` says first.

@@ -54,7 +54,7 @@ pub struct CollideArguments {
     #[command(flatten)]
     pub method: MethodArguments,
 
-    /// How one collision is printed
+    /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     #[arg(conflicts_with = "batch")]
     pub format: Format,

@@ -11,7 +11,7 @@ use crate::error::Failure;
 use crate::shared::collision::{CollisionArguments, contact};
 use crate::shared::study;
 use crate::shared::system::{GivenArguments, SystemRun};
-use crate::shared::threads::threads;
+use crate::shared::threads::ThreadsArguments;
 
 /// Measure how errors fall with the step and the tolerance, and what they cost
 #[derive(Debug, clap::Args)]
@@ -50,11 +50,9 @@ pub struct ConvergeArguments {
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
 
-    /// Threads; 1 to 1024 [default: one for each core]; results other than times do not depend on
-    /// it
-    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = threads())]
-    pub threads: Option<u16>,
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Makes the study, writes its files and prints its findings.

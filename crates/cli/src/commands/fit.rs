@@ -20,7 +20,7 @@ use crate::shared::Format;
 use crate::shared::collision::reduction;
 use crate::shared::files::{self, plotted, require_different};
 use crate::shared::law::LawArguments;
-use crate::shared::threads::{ThreadsArguments, with_steps};
+use crate::shared::threads::ThreadsArguments;
 
 /// Fit a contact law to measured impacts
 #[derive(Debug, clap::Args)]
@@ -90,7 +90,7 @@ pub struct FitArguments {
     #[command(flatten)]
     pub law: LawArguments,
 
-    /// How the fit is printed
+    /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     pub format: Format,
 
@@ -113,8 +113,7 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
     let settings = settings(arguments)?;
     let plot = arguments.plot.as_ref();
     plot.map_or(Ok(()), PictureFile::probe)?;
-    let threads = arguments.threads.threads;
-    let result = with_steps(threads, |report| fit::run(&settings, report))??;
+    let result = arguments.threads.with_steps(|report| fit::run(&settings, report))??;
     if let Some(plot) = plot {
         let picture = result.picture().ok_or_else(|| {
             let expected = "expected data at an angle above 0";

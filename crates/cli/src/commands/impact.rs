@@ -44,7 +44,7 @@ pub struct ImpactArguments {
     #[command(flatten)]
     pub method: MethodArguments,
 
-    /// How the impact is printed
+    /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     #[arg(conflicts_with = "batch")]
     pub format: Format,

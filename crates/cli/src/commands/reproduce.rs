@@ -19,7 +19,7 @@ use stickslip_studies::contact_laws;
 use super::laws::write_page;
 use crate::error::Failure;
 use crate::output::console::say;
-use crate::shared::threads::{self, ThreadsArguments};
+use crate::shared::threads::ThreadsArguments;
 use crate::{page, version};
 
 /// Compute the figures of the paper anew, and show everything on one page
@@ -95,7 +95,7 @@ pub fn run(arguments: &ReproduceArguments) -> Result<(), Failure> {
 /// As of [`run`].
 fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Failure> {
     prepare(out)?;
-    let pool = threads::pool(arguments.threads.threads)?;
+    let pool = arguments.threads.pool()?;
     let cells = usize::from(arguments.cells);
     let reproduction = Reproduction::new(cells, arguments.model);
     let parts = Reproduction::parts();

@@ -60,7 +60,7 @@ pub struct RunArguments {
     #[arg(allow_hyphen_values = true)]
     pub atol: Option<f64>,
 
-    /// How the run is printed
+    /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     pub format: Format,
 

@@ -18,7 +18,7 @@ use stickslip_tracer::{Stack, StackOptions, Watch};
 use crate::error::Failure;
 use crate::shared::files::{self, plotted, require_different, write_json};
 use crate::shared::system::{PlaneArguments, SystemPlane, place};
-use crate::shared::threads::{threads, with_steps};
+use crate::shared::threads::ThreadsArguments;
 
 /// Trace atlases at several dampings, and find where regions are born and die between them
 #[derive(Debug, clap::Args)]
@@ -69,11 +69,9 @@ pub struct StackArguments {
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 
-    /// Threads for the atlases; 1 to 1024 [default: one for each core]; results do not depend on
-    /// it
-    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = threads())]
-    pub threads: Option<u16>,
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// A parameter that differs between atlases.
@@ -111,7 +109,7 @@ fn collisions(arguments: &StackArguments) -> Result<(), Failure> {
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
-    let made = with_steps(arguments.threads, |report| stack(frame, damping, tolerance, report))?;
+    let made = arguments.threads.with_steps(|report| stack(frame, damping, tolerance, report))?;
     let made = made.map_err(|error| match error {
         DampingStackError::Dampings { .. } => refused(error),
         DampingStackError::Atlas { source, .. } => source.into(),
@@ -136,7 +134,7 @@ fn runs(plane: &SystemPlane, arguments: &StackArguments) -> Result<(), Failure> 
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
     let family = |value| plane.family.with(third, value);
-    let made = with_steps(*threads, |report| {
+    let made = threads.with_steps(|report| {
         Stack::watched(family, &plane.window, values, &options, InParallel, Watch::from(report))
     })?;
     let made = made.map_err(|error| {

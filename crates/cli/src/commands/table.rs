@@ -17,7 +17,7 @@ use crate::output::console::print;
 use crate::output::text::pairs;
 use crate::shared::files::require_different;
 use crate::shared::study::refused;
-use crate::shared::threads::{ThreadsArguments, with_steps};
+use crate::shared::threads::ThreadsArguments;
 use crate::version;
 
 /// Make a table of the restitution, to be looked up in nanoseconds
@@ -93,8 +93,7 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
     tables::require_prefix(prefix).map_err(refused)?;
     let formats = out.iter().map(|out| TableFormat::of(out)).collect::<Result<Vec<_>, _>>()?;
     let files = out.iter().map(|out| OutputFile::create(out)).collect::<Result<Vec<_>, _>>()?;
-    let threads = arguments.threads.threads;
-    let table = with_steps(threads, |report| tables::run(&settings, report))??;
+    let table = arguments.threads.with_steps(|report| tables::run(&settings, report))??;
     let stored = files.into_iter().zip(formats).map(|(file, format)| {
         let content = match format {
             TableFormat::Json => json::line(&Document::from(&table)),

@@ -23,7 +23,7 @@ use crate::shared::collision::reduction;
 use crate::shared::files;
 use crate::shared::law::LawArguments;
 use crate::shared::study::refused;
-use crate::shared::threads::{ThreadsArguments, with_steps};
+use crate::shared::threads::ThreadsArguments;
 
 /// Values in an interval.
 const GRID: u16 = 8;
@@ -94,7 +94,7 @@ pub struct TimestepArguments {
     #[arg(value_parser = number::parse_option)]
     pub error: Option<f64>,
 
-    /// How the errors are printed
+    /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     pub format: Format,
 
@@ -130,8 +130,7 @@ pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
     }
     let plot = arguments.plot.as_ref();
     plot.map_or(Ok(()), PictureFile::probe)?;
-    let threads = arguments.threads.threads;
-    let result = with_steps(threads, |report| time_steps::run(&settings, report))??;
+    let result = arguments.threads.with_steps(|report| time_steps::run(&settings, report))??;
     if let Some(plot) = plot {
         publish([plot.write(Ok(result.picture()))?])?;
     }

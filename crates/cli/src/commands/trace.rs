@@ -19,7 +19,7 @@ use crate::shared::collision::{CollisionArguments, ImpactRange, window};
 use crate::shared::files::{self, plotted, require_different, write_json};
 use crate::shared::law::LawArguments;
 use crate::shared::system::{PlaneArguments, SystemPlane};
-use crate::shared::threads::{threads, with_steps};
+use crate::shared::threads::ThreadsArguments;
 
 /// Trace every boundary in a window on which the switches change
 #[derive(Debug, clap::Args)]
@@ -77,11 +77,9 @@ pub struct TraceArguments {
     #[arg(long, value_name = "FILE.json", help_heading = "Output", conflicts_with = "system")]
     pub gaining: Option<PathBuf>,
 
-    /// Threads for the verification; 1 to 1024 [default: one for each core]; results do not depend
-    /// on it
-    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = threads())]
-    pub threads: Option<u16>,
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Traces the boundaries of the window, and writes its atlas.
@@ -114,7 +112,7 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
     let map = map.as_deref().map(OutputFile::create).transpose()?;
     let gaining_file = lines.as_deref().map(OutputFile::create).transpose()?;
 
-    let (verified, gained) = with_steps(arguments.threads, |report| {
+    let (verified, gained) = arguments.threads.with_steps(|report| {
         let verified = atlas::trace(frame, tolerance, report);
         let gained = gaining_file.is_some().then(|| gaining::trace(frame, tolerance, report));
         (verified, gained)
@@ -166,7 +164,7 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
     let options = plane.atlas_options(*tolerance)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
-    let atlas = with_steps(*threads, |report| {
+    let atlas = threads.with_steps(|report| {
         let surveyor = Surveyor { options, executor: InParallel, watch: Watch::from(report) };
         surveyor.atlas(&plane.family, &plane.window)
     })?;

@@ -8,7 +8,7 @@ use stickslip_files::output::study::write_study;
 use stickslip_plane::progress::Report;
 use stickslip_studies::{Study, StudyError};
 
-use super::threads::with_steps;
+use super::threads::ThreadsArguments;
 use crate::error::Failure;
 use crate::output::console::print;
 
@@ -18,11 +18,11 @@ use crate::output::console::print;
 /// Files cannot be written, which is tried first, or `make` fails.
 pub fn run(
     out: &Path,
-    threads: Option<u16>,
+    threads: ThreadsArguments,
     make: impl FnOnce(Report<'_>) -> Result<Study, StudyError> + Send,
 ) -> Result<(), Failure> {
     prepare(out)?;
-    let study = with_steps(threads, make)??;
+    let study = threads.with_steps(make)??;
     write_study(&study, out)?;
     print(|out| study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
 }

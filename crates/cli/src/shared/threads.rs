@@ -16,6 +16,29 @@ pub struct ThreadsArguments {
     pub threads: Option<u16>,
 }
 
+impl ThreadsArguments {
+    /// The threads, as one pool.
+    ///
+    /// # Errors
+    /// [`Failure::Threads`]: they cannot be started.
+    pub fn pool(self) -> Result<ThreadPool, Failure> {
+        pool(self.threads)
+    }
+
+    /// Does `work` on the threads, with a progress bar of its steps.
+    ///
+    /// # Errors
+    /// As of [`Self::pool`].
+    pub fn with_steps<T: Send>(
+        self,
+        work: impl FnOnce(Report<'_>) -> T + Send,
+    ) -> Result<T, Failure> {
+        let pool = self.pool()?;
+        let bar = Bar::steps();
+        Ok(pool.install(|| work(&|progress| bar.report(progress))))
+    }
+}
+
 /// Reads a number of threads.
 pub fn threads() -> RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=1024)
@@ -27,18 +50,4 @@ pub fn threads() -> RangedI64ValueParser<u16> {
 /// [`Failure::Threads`]: the threads cannot be started.
 pub fn pool(count: Option<u16>) -> Result<ThreadPool, Failure> {
     Ok(ThreadPoolBuilder::new().num_threads(count.map_or(0, usize::from)).build()?)
-}
-
-/// Does `work` on `count` threads, or on one thread for each core, with a progress bar of its
-/// steps.
-///
-/// # Errors
-/// [`Failure::Threads`]: the threads cannot be started.
-pub fn with_steps<T: Send>(
-    count: Option<u16>,
-    work: impl FnOnce(Report<'_>) -> T + Send,
-) -> Result<T, Failure> {
-    let pool = pool(count)?;
-    let bar = Bar::steps();
-    Ok(pool.install(|| work(&|progress| bar.report(progress))))
 }

@@ -24,7 +24,6 @@ use crate::output::progress::Bar;
 use crate::shared::collision::{ImpactRange, window};
 use crate::shared::files::{plotted, require_different};
 use crate::shared::method::Method;
-use crate::shared::threads::pool;
 use crate::version;
 
 /// Largest number of columns, and of rows, in the picture.
@@ -43,7 +42,7 @@ pub fn run(arguments: &MapArguments) -> Result<(), Failure> {
     let output = MapOutput::of(arguments)?;
     let (grid, engine) = grid(arguments)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
-    let pool = pool(threads.threads)?;
+    let pool = threads.pool()?;
     let task = Task::new(grid, engine, &version::program());
     if let Some(part) = part
         && let Some(there) = part_file::find(out, part, &task)?

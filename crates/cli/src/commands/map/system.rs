@@ -16,7 +16,6 @@ use crate::error::Failure;
 use crate::output::progress::Bar;
 use crate::shared::files::{plotted, require_different};
 use crate::shared::system::SystemPlane;
-use crate::shared::threads::pool;
 use crate::version;
 
 /// The largest number of points of a map, which is in memory.
@@ -55,7 +54,7 @@ pub fn run(plane: &SystemPlane, arguments: &MapArguments) -> Result<(), Failure>
     }
     let format = MapFormat::of(out)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
-    let pool = pool(threads.threads)?;
+    let pool = threads.pool()?;
     let x = centres(plane.window.low.x, plane.window.high.x, columns);
     let y = centres(plane.window.low.y, plane.window.high.y, rows);
     let bar = Bar::points(columns * rows);

@@ -7,7 +7,6 @@ use stickslip_studies::Cell;
 use super::{AuditFormat, ReproduceArguments};
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::shared::threads::pool;
 
 /// Tests statements and prints them.
 ///
@@ -15,7 +14,7 @@ use crate::shared::threads::pool;
 /// A collision cannot be computed, or standard output cannot be written.
 pub fn print_tested(arguments: &ReproduceArguments) -> Result<(), Failure> {
     let ReproduceArguments { statement, model, threads, .. } = arguments;
-    let audit = pool(threads.threads)?.install(|| test(*model, statement, SILENT))?;
+    let audit = threads.pool()?.install(|| test(*model, statement, SILENT))?;
     let text = match arguments.format {
         AuditFormat::Text => {
             audit.statements.iter().map(statement_in_text).collect::<Vec<_>>().join("\n")
