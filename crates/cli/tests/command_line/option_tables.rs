@@ -7,7 +7,7 @@ use std::{env, fs};
 use clap::{Arg, Command};
 
 /// Where this is set, the page is written anew.
-const UPDATE: &str = "UPDATE_DOCS";
+const UPDATE: &str = "UPDATE_EXPECT";
 
 const BEGIN: &str = "<!-- options of ";
 const END: &str = "<!-- end -->";
@@ -54,7 +54,7 @@ fn with_tables(page: &str) -> String {
             continue;
         };
         let command = program.find_subcommand(name).expect("a command");
-        text += &format!("\n{}\n{END}\n", table(command, &mut seen));
+        text.extend(["\n", &table(command, &mut seen), "\n", END, "\n"]);
         assert!(lines.any(|line| line == END), "the table of {name} has no end");
     }
     text
