@@ -1,5 +1,6 @@
-//! The commands: what may be typed, and what each command does. One file for each, with its options,
-//! their checks, what it does and its help. What several commands have in common is in `shared`.
+//! The commands: what may be typed, and what each command does. There is one file for each command,
+//! with its options, their checks, what it does and its help. What several commands have in common
+//! is in `shared`.
 
 mod asymptote;
 mod collide;

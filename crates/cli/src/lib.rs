@@ -1,5 +1,5 @@
-//! The program `stickslip`: a command checks its options and carries them out, and the result becomes
-//! an exit code.
+//! The program `stickslip`: a command checks its options and carries them out, and the result
+//! becomes an exit code.
 //!
 //! It is a library only so that tests and fuzz targets can carry out command lines without starting
 //! a process for each.

@@ -1,5 +1,5 @@
-//! `stack`: atlases over the damping, or over a parameter of a system of one's own, and what changes
-//! between them.
+//! `stack`: atlases over the damping, or over a parameter of a system of one's own, and what
+//! changes between them.
 
 use std::error::Error;
 use std::path::PathBuf;
