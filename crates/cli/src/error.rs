@@ -139,6 +139,14 @@ impl Failure {
         FileError::output(path, source).into()
     }
 
+    /// The failure of a complete file against which something speaks, if there is an `objection`.
+    pub(crate) fn if_doubtful(path: &Path, objection: Option<String>) -> Result<(), Self> {
+        match objection {
+            Some(reason) => Err(Self::Doubtful { path: path.to_owned(), reason }),
+            None => Ok(()),
+        }
+    }
+
     /// Whether the options are wrong.
     #[must_use]
     pub fn is_usage(&self) -> bool {

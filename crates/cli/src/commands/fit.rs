@@ -1,214 +1,282 @@
-//! A fit, made, printed and drawn.
+//! `fit`: a contact law fitted to measured impacts, printed and drawn.
 
-use std::io::{self, Write};
+mod table;
 
+use std::path::{Path, PathBuf};
+
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::source::{is_standard_input, shown};
+use stickslip_files::input::{bodies, law, measured, number, range};
 use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
-use stickslip_model::Tangential;
-use stickslip_practice::fit::{self, Course, Fit, Interval, Measured, Mindlin, Minimum, Piece};
+use stickslip_files::output::picture::PictureFile;
+use stickslip_model::{Contact, Law, presets};
+use stickslip_plane::Range;
+use stickslip_practice::fit::{self, Bodies, Free, Settings, Values};
 
-use crate::args::Format;
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::progress::Bar;
-use crate::output::text::{aligned, number, pairs};
-use crate::plan::FitPlan;
-use crate::threads;
+use crate::shared::Format;
+use crate::shared::collision::reduction;
+use crate::shared::files::{self, plotted, require_different};
+use crate::shared::law::LawArguments;
+use crate::shared::threads::ThreadsArguments;
+
+/// Fit a contact law to measured impacts
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct FitArguments {
+    /// CSV file of measured impacts; - for standard input
+    #[arg(value_name = "DATA.csv")]
+    pub data: PathBuf,
+
+    /// Names of what is fitted, separated by commas: k_t (or kappa), mu, tangential_damping, at
+    /// most two of them, and damping
+    #[arg(long, value_name = "NAME,…", help_heading = "Fit", value_delimiter = ',')]
+    #[arg(value_parser = free, default_value = "k_t,mu")]
+    pub free: Vec<Free>,
+
+    /// Range of a fitted number, such as kappa=1:80; of the stiffness as κ at normal incidence; may
+    /// be given for each [default: kappa=0.1:150 mu=0.01:2 tangential_damping=0:4 damping=0:3]
+    #[arg(long, value_name = "NAME=LO:HI", help_heading = "Fit", value_parser = named_range)]
+    pub range: Vec<(Free, Range)>,
+
+    /// Part of the cases in which the intervals hold the true values; 0.5 to 0.9999
+    #[arg(long, value_name = "P", help_heading = "Fit", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option, default_value_t = 0.95)]
+    pub level: f64,
+
+    /// Use only the ratios of the errors, and estimate their size from the residuals
+    #[arg(long, help_heading = "Fit")]
+    pub relative_errors: bool,
+
+    /// Coefficient of normal restitution at normal incidence, which decides the damping; above 0,
+    /// at most 1
+    #[arg(long, value_name = "E", help_heading = "Fit", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option)]
+    pub eps_n: Option<f64>,
+
+    /// JSON file of the two bodies as `impact` reads it; motions in it are not used
+    #[arg(long, value_name = "FILE.json", help_heading = "Bodies")]
+    #[arg(conflicts_with_all = ["kappa", "mu", "alpha", "damping", "tangential_damping"])]
+    pub bodies: Option<PathBuf>,
+
+    /// Speed of all impacts in m/s, with --bodies, if the data do not have it
+    #[arg(long, value_name = "V", help_heading = "Bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option, requires = "bodies")]
+    pub speed: Option<f64>,
+
+    /// κ at normal incidence, if it is not fitted; above 0
+    #[arg(long, value_name = "K", help_heading = "Bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
+    pub kappa: Option<f64>,
+
+    /// Coefficient of friction μ, if it is not fitted; above 0
+    #[arg(long, value_name = "M", help_heading = "Bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
+    pub mu: Option<f64>,
+
+    /// Tangential inertia α; above 0, at most 1 [default: 2/7, homogeneous spheres]
+    #[arg(long, value_name = "A", help_heading = "Bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
+    pub alpha: Option<f64>,
+
+    /// Scaled damping a at normal incidence, if it is not fitted; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
+
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
+    pub format: Format,
+
+    /// Picture of data, fit and boundaries, which are printed as well
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = files::picture())]
+    pub plot: Option<PictureFile>,
+
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
+}
 
 /// Makes the fit, draws it if that is wanted, and prints it.
 ///
 /// # Errors
-/// An impact cannot be computed, there is nothing to draw, or the picture or standard output cannot
-/// be written.
-pub fn run(plan: &FitPlan) -> Result<(), Failure> {
-    if let Some(plot) = &plan.plot {
-        plot.probe()?;
-    }
-    let pool = threads::pool(plan.threads)?;
-    let bar = Bar::steps();
-    let result = pool.install(|| fit::run(&plan.settings, &|it| bar.report(it)));
-    drop(bar);
-    let result = result?;
-    if let Some(plot) = &plan.plot {
+/// An option is missing or out of range, a file cannot be used, an impact cannot be computed, there
+/// is nothing to draw, or the picture or standard output cannot be written.
+pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
+    let settings = settings(arguments)?;
+    let plot = arguments.plot.as_ref();
+    plot.map_or(Ok(()), PictureFile::probe)?;
+    let result = arguments.threads.with_steps(|report| fit::run(&settings, report))??;
+    if let Some(plot) = plot {
         let picture = result.picture().ok_or_else(|| {
             let expected = "expected data at an angle above 0";
             Failure::Usage(format!("--plot has nothing to draw; {expected}"))
         })?;
         publish([plot.write(Ok(picture))?])?;
     }
-    print(|out| match plan.format {
+    print(|out| match arguments.format {
         Format::Json => json::lines(out, &result),
-        Format::Table => tables(out, &result),
+        Format::Table => table::write(out, &result),
     })
 }
 
-fn tables(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
-    let of_data = match fit.data {
-        1 => "1 datum".to_owned(),
-        count => format!("{count} data"),
+/// The data, and what is fitted.
+fn settings(arguments: &FitArguments) -> Result<Settings, Failure> {
+    let FitArguments { data, bodies: file, free, .. } = arguments;
+    if is_standard_input(data) && file.as_deref().is_some_and(is_standard_input) {
+        let expected = "expected a file for one of them";
+        return Err(Failure::Usage(format!(
+            "DATA.csv and --bodies are both standard input; {expected}"
+        )));
+    }
+    let inputs = [("DATA.csv", Some(data.as_path())), ("--bodies", file.as_deref())];
+    require_different(&[plotted(arguments.plot.as_ref())], &inputs)?;
+    let name = arguments.law.law.as_deref();
+    if free.contains(&Free::TangentialDamping) {
+        permits(name)?;
+    }
+    let bodies = match file {
+        Some(file) => in_file(file, name)?,
+        None => scaled(arguments, arguments.law.chosen()?.0)?,
     };
-    writeln!(out, "Fit of {of_data}, law {}", fit.law.equations())?;
-    match fit.speed_m_per_s {
-        Some(speed) => {
-            let speed = number(speed);
-            writeln!(out, "κ and the damping are those of normal incidence at {speed} m/s")?;
+    if let Some(speed) = arguments.speed.filter(|speed| *speed <= 0.0) {
+        let expected = "expected a finite number above 0, in m/s";
+        return Err(Failure::Usage(format!("--speed = {speed:?} is out of range; {expected}")));
+    }
+    let scaled = bodies.are_scaled();
+    let mut settings = Settings::new(bodies, measured::read(data, arguments.speed, scaled)?);
+    settings.free.clone_from(free);
+    for (index, (free, range)) in arguments.range.iter().enumerate() {
+        let name = free.name();
+        if !settings.free.contains(free) {
+            let expected = "expected what is in --free";
+            return Err(Failure::Usage(format!("--range {name} has no effect; {expected}")));
         }
-        None => writeln!(out, "κ and the damping are those of normal incidence")?,
+        if arguments.range[..index].iter().any(|(other, _)| other == free) {
+            return Err(Failure::Usage(format!(
+                "--range {name} is given twice; expected one range"
+            )));
+        }
+        *settings.ranges.of_mut(*free) = *range;
     }
-    let errors = if fit.estimated_errors { "estimated from the residuals" } else { "those given" };
-    let first = &fit.minima[0].values;
-    pairs(
-        out,
-        &[
-            ("alpha", format!("{:.6}", fit.alpha)),
-            ("damping", format!("{:.6}", first.damping)),
-            ("eps_n", format!("{:.6}", fit.eps_n)),
-            ("errors", errors.to_owned()),
-        ],
-    )?;
-    writeln!(out, "\nMinima, the best one first")?;
-    minima(out, fit)?;
-    writeln!(out, "\nIntervals that hold the true value in {} of cases", fit.level)?;
-    for interval in &fit.intervals {
-        writeln!(out, "{}", line(fit, interval))?;
-    }
-    if let Some(mindlin) = &fit.mindlin {
-        writeln!(out, "\n{}", of_mindlin(fit, mindlin))?;
-    }
-    writeln!(out)?;
-    residuals(out, fit)?;
-    fit.course.as_ref().map_or(Ok(()), |course| boundaries(out, course))
+    settings.eps_n = arguments.eps_n;
+    settings.level = arguments.level;
+    settings.relative_errors = arguments.relative_errors;
+    settings.validate().map_err(|invalid| Failure::input(shown(data), invalid))?;
+    Ok(settings)
 }
 
-fn minima(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
-    let stiffness = stiffness_name(fit);
-    let dashpot = fit.minima.iter().any(|minimum| minimum.values.tangential_damping != 0.0);
-    let mut header = vec!["kappa".to_owned()];
-    header.extend(fit.speed_m_per_s.map(|_| stiffness.to_owned()));
-    header.push("mu".to_owned());
-    header.extend(dashpot.then(|| "tangential_damping".to_owned()));
-    header.push("misfit".to_owned());
-    let squares = |minimum: &Minimum| minimum.root_mean_squares.clone();
-    header
-        .extend(squares(&fit.minima[0]).iter().map(|it| format!("rms {}", it.quantity.heading())));
-    header.push(String::new());
-    let rows = fit.minima.iter().map(|minimum| {
-        let values = &minimum.values;
-        let mut row = vec![format!("{:.6}", values.kappa)];
-        row.extend(minimum.stiffness.map(|stiffness| format!("{stiffness:.6e}")));
-        row.push(format!("{:.6}", values.mu));
-        row.extend(dashpot.then(|| format!("{:.6}", values.tangential_damping)));
-        row.push(format!("{:.6}", minimum.misfit));
-        row.extend(squares(minimum).iter().map(|it| format!("{:.5}", it.quantity.shown(it.value))));
-        row.push(if minimum.at_end_of_range { "at an end" } else { "" }.to_owned());
-        row
-    });
-    columns(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())
+/// Refuses a free tangential damping in a law that is known to have none.
+fn permits(name: Option<&str>) -> Result<(), Failure> {
+    match name.and_then(presets::find) {
+        Some(preset) if !preset.tangential_damping => Err(Failure::Usage(format!(
+            "tangential_damping cannot be fitted in the law {}: {}; expected other free numbers, or \
+             a file of the law that is meant",
+            preset.name, preset.checked
+        ))),
+        _ => Ok(()),
+    }
 }
 
-/// Writes as many columns as there are, aligned to the right.
-fn columns(out: &mut dyn Write, rows: &[Vec<String>]) -> io::Result<()> {
-    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+fn in_file(file: &Path, name: Option<&str>) -> Result<Bodies, Failure> {
+    let law = law::by_name_or_file(name)?;
+    let (sphere, pair) = bodies::read_sphere_and_pair(file, law)?;
+    law::permits(name, "tangential damping", pair.tangential_damping())?;
+    Ok(Bodies::of_sphere(&sphere, pair))
+}
+
+/// Bodies of which nothing but α is known.
+fn scaled(arguments: &FitArguments, law: Law) -> Result<Bodies, Failure> {
+    let FitArguments { kappa, mu, damping, free, .. } = arguments;
+    let fixed = |name: &str, value: Option<f64>, which: Free| match (value, free.contains(&which)) {
+        (Some(value), true) => Err(Failure::Usage(format!(
+            "--{name} {value:?} has no effect, since it is fitted; expected it without {name} in --free"
+        ))),
+        (value, _) => Ok(value),
     };
-    let widths: Vec<usize> = (0..count).map(width).collect();
-    for row in rows {
-        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}"));
-        writeln!(out, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
-    }
-    Ok(())
-}
-
-fn stiffness_name(fit: &Fit) -> &'static str {
-    match fit.law.tangential {
-        Tangential::Constant => "k_t [kg/s²]",
-        Tangential::Mindlin => "K [kg/(s² √m)]",
-    }
-}
-
-/// The pieces of an interval, and of that of the stiffness in SI units.
-fn line(fit: &Fit, interval: &Interval) -> String {
-    let name = interval.parameter.name();
-    let Some(pieces) = &interval.pieces else {
-        return format!("{name}: none, since there are no more data than free numbers");
+    let needed = |name: &str, value: Option<f64>, which: Free| {
+        let value = fixed(name, value, which)?;
+        // What is fitted may have any value.
+        let any = free.contains(&which).then_some(1.0);
+        value.or(any).ok_or_else(|| {
+            Failure::Usage(format!(
+                "--{name} is missing; expected it, {name} in --free, or --bodies"
+            ))
+        })
     };
-    let ends = |unit: f64| {
-        let piece = |piece: &Piece| {
-            let Piece { low, high, from_end_of_range, to_end_of_range } = piece;
-            let end = |is: &bool| if *is { " (end of range)" } else { "" };
-            let shown = |value: f64| {
-                if unit == 1.0 { format!("{value:.6}") } else { format!("{:.6e}", value / unit) }
-            };
-            let (from, to) = (end(from_end_of_range), end(to_end_of_range));
-            format!("{}{from} to {}{to}", shown(*low), shown(*high))
-        };
-        pieces.iter().map(piece).collect::<Vec<_>>().join(" or ")
+    let dashpot = arguments.law.tangential_damping;
+    let values = Values {
+        kappa: needed("kappa", *kappa, Free::Kappa)?,
+        mu: needed("mu", *mu, Free::Mu)?,
+        tangential_damping: fixed("tangential-damping", dashpot, Free::TangentialDamping)?
+            .unwrap_or(0.0),
+        damping: fixed("damping", *damping, Free::Damping)?.unwrap_or(0.0),
     };
-    let in_si = fit.kappa_of_unit_stiffness.filter(|_| interval.parameter == fit::Free::Kappa);
-    let in_si = in_si.map(|unit| format!("\n{}: {}", stiffness_name(fit), ends(unit)));
-    format!("{name}: {}{}", ends(1.0), in_si.unwrap_or_default())
+    if let (Some(damping), Some(eps_n)) = (damping, arguments.eps_n) {
+        return Err(Failure::Usage(format!(
+            "--damping {damping:?} and --eps-n {eps_n:?} are both given; expected one of them"
+        )));
+    }
+    let alpha = reduction(None, arguments.alpha).alpha;
+    Contact::new(values.kappa, 1.0, values.damping)
+        .and_then(|contact| contact.with_law(law, values.tangential_damping))
+        .and_then(|_| Bodies::scaled(law, alpha, &values))
+        .map_err(|invalid| Failure::Usage(invalid.to_string()))
 }
 
-fn of_mindlin(fit: &Fit, mindlin: &Mindlin) -> String {
-    let best = &mindlin.best;
-    let rms = |minimum: &Minimum| {
-        let squares = minimum.root_mean_squares.iter();
-        let squares = squares.filter(|it| it.quantity != Measured::EpsN);
-        squares
-            .map(|it| format!("{:.5}", it.quantity.shown(it.value)))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    let text = format!(
-        "Mindlin's stiffness of the materials, κ = {:.6}: best μ = {:.6}, misfit {:.6}, rms {} \
-         instead of {}",
-        best.values.kappa,
-        best.values.mu,
-        best.misfit,
-        rms(best),
-        rms(&fit.minima[0])
-    );
-    match mindlin.excluded {
-        Some(true) => format!("Warning: {text}; it is outside the interval of κ"),
-        Some(false) => format!("{text}; it is in the interval of κ"),
-        None => text,
-    }
+/// Reads the name of what is fitted.
+fn free(text: &str) -> Result<Free, String> {
+    Free::find(text.trim()).ok_or_else(|| {
+        let names = Free::ALL.map(Free::name).join(", ");
+        format!("nothing that can be fitted is named {text:?}; expected k_t, {names}")
+    })
 }
 
-fn residuals(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
-    let header = ["quantity", "line", "angle [°]", "measured", "error", "fit", "residual"];
-    let rows = fit.residuals.iter().map(|residual| {
-        let datum = &residual.datum;
-        let shown = |value: f64| format!("{:.5}", datum.quantity.shown(value));
-        [
-            datum.quantity.heading().to_owned(),
-            datum.row.to_string(),
-            format!("{:.3}", datum.angle_rad().to_degrees()),
-            shown(datum.value),
-            datum.error.map_or_else(String::new, shown),
-            shown(residual.predicted),
-            shown(residual.residual),
-        ]
-    });
-    let header = std::iter::once(header.map(str::to_owned));
-    aligned(out, &header.chain(rows).collect::<Vec<_>>())
+/// Reads the range of what is fitted.
+fn named_range(text: &str) -> Result<(Free, Range), String> {
+    let (name, ends) =
+        text.split_once('=').ok_or("no name; expected NAME=LO:HI, such as kappa=1:80")?;
+    Ok((free(name)?, range::parse(ends).map_err(|problem| problem.to_string())?))
 }
 
-fn boundaries(out: &mut dyn Write, course: &Course) -> io::Result<()> {
-    let [low, high] = [course.angles_rad.low, course.angles_rad.high].map(f64::to_degrees);
-    writeln!(out, "\nSwitches of the best fit from {low:.3}° to {high:.3}°")?;
-    if course.boundaries.is_empty() {
-        writeln!(out, "the same everywhere")?;
-    }
-    for boundary in &course.boundaries {
-        let (angle, below, above) =
-            (boundary.angle_rad.to_degrees(), &boundary.below, &boundary.above);
-        writeln!(out, "{angle:.6}°: {below} below, {above} above")?;
-    }
-    if !course.resolved {
-        writeln!(out, "In doubt: the tracer could not explain everything that it saw")?;
-    }
-    Ok(())
-}
+/// What `fit --help` says first.
+const ABOUT: &str = "\
+Fit the tangential stiffness and the friction of a contact law, or other numbers, to measured \
+restitution, spins or rebound angles of impacts without spin before. Such problems have many \
+minima. All of them in a range are found and printed, the best one first, with confidence \
+intervals from profiles over the whole range, which may have several pieces.
+
+The normal restitution decides the damping by itself, from data of eps_n or by --eps-n. Without \
+--bodies all impacts have the same unknown speed, and the stiffness is told as κ at normal \
+incidence.";
+
+/// What `fit --help` says last.
+const EXAMPLES: &str = "\
+Columns of the data; cells may be blank, and a column comment is not read:
+  centre_impact_angle_deg or _rad        angle of the impact from the normal, above 0, below 90°
+  speed_m_per_s                          speed, if it is not --speed
+  normal_m_per_s, tangential_m_per_s     instead of the angle and the speed
+  eps_n, eps_t                           restitution of the surfaces; full reversal is -1
+  centre_e_t                             tangential restitution of the centre
+  spin_rad_per_s                         spin of the first sphere afterwards, as it would roll
+  centre_rebound_angle_deg or _rad       angle of the centre afterwards, from the normal
+  …_error                                standard error of any of these; all data have it, or none
+
+Without errors their size is estimated from the residuals, which needs more data than free numbers.
+The constants of the law are in the file of the bodies, as `impact --help` lists them; there, those
+that are fitted have any value.
+
+Examples:
+  stickslip fit examples/oblique_impacts.csv --bodies examples/aluminium_oxide_on_glass.json \\
+    --speed 3.9 --plot fit.svg
+  stickslip fit data.csv --law gran/hertz/history --free kappa,mu --eps-n 0.95
+  stickslip fit data.csv --free kappa,mu --range kappa=1:80 --format json
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,10 +1,11 @@
-//! The contact laws that have names.
+//! `laws`: the contact laws that have names, and a page that shows what they do.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use stickslip_files::input::law;
+use stickslip_files::input::parameter::Parameter;
 use stickslip_files::output::directory::prepare;
 use stickslip_files::output::file::write;
 use stickslip_files::output::json;
@@ -12,20 +13,50 @@ use stickslip_files::output::study::write_study;
 use stickslip_model::presets::{self, Preset};
 use stickslip_studies::contact_laws::{self, Settings};
 
-use crate::args::{Format, LawsArguments};
 use crate::error::Failure;
 use crate::output::console::{print, say};
 use crate::output::progress::Bar;
 use crate::output::text;
-use crate::plan::StudyPlan;
-use crate::{page, threads};
+use crate::page;
+use crate::shared::{Format, study, threads};
 
-/// A law as `--format json` lists it.
-#[derive(Serialize)]
-struct Entry<'a> {
-    #[serde(flatten)]
-    preset: &'a Preset,
-    equations: String,
+/// List the contact laws that have names, or print one of them
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct LawsArguments {
+    /// The law that is printed; +limit_damping may be added to its name [default: a list of all]
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
+
+    /// How it is printed; the JSON of one law is a file for --law
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+
+    /// Directory for a page that shows what the laws do, DIR/laws.html, and its data; created if it
+    /// is missing
+    #[arg(long, value_name = "DIR", help_heading = "Page", conflicts_with_all = ["name", "format"])]
+    pub out: Option<PathBuf>,
+
+    /// Scaled damping of the maps; 0 or above [default: 0.2]
+    #[arg(long, value_name = "A", help_heading = "Page", requires = "out")]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text), allow_hyphen_values = true)]
+    pub damping: Option<f64>,
+
+    /// Tangential damping (γ_t/γ_n)/α of the maps; 0 or above [default: 0]
+    #[arg(long, value_name = "B", help_heading = "Page", requires = "out")]
+    #[arg(value_parser = |text: &str| Parameter::TangentialDamping.parse(text))]
+    #[arg(allow_hyphen_values = true)]
+    pub tangential_damping: Option<f64>,
+
+    /// Columns and rows of each map; 1 to 1000 [default: 60]
+    #[arg(long, value_name = "N", help_heading = "Page", requires = "out")]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1000), allow_hyphen_values = true)]
+    pub cells: Option<u16>,
+
+    /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Page", requires = "out")]
+    #[arg(value_parser = threads::threads(), allow_hyphen_values = true)]
+    pub threads: Option<u16>,
 }
 
 /// Prints all laws, or one; or computes what they do, and writes a page that shows it.
@@ -34,10 +65,12 @@ struct Entry<'a> {
 /// No law has this name, options contradict each other, a collision cannot be computed, or an
 /// output cannot be written.
 pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
-    if let Some(plan) = StudyPlan::contact_laws(arguments)? {
-        prepare(&plan.out)?;
-        let pool = threads::pool(plan.threads)?;
-        let page = pool.install(|| write_page(&plan.settings, &plan.out))?;
+    if let Some(out) = &arguments.out {
+        let settings = settings(arguments);
+        settings.validate().map_err(study::refused)?;
+        prepare(out)?;
+        let pool = threads::pool(arguments.threads)?;
+        let page = pool.install(|| write_page(&settings, out))?;
         say(format_args!("everything is on {}", page.display()));
         return Ok(());
     }
@@ -53,6 +86,26 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
         }
         (None, Format::Table) => all(out),
     })
+}
+
+/// The window and the dampings of the maps.
+fn settings(arguments: &LawsArguments) -> Settings {
+    let LawsArguments { damping, tangential_damping, cells, .. } = *arguments;
+    let usual = Settings::default();
+    Settings {
+        damping: damping.unwrap_or(usual.damping),
+        tangential_damping: tangential_damping.unwrap_or(usual.tangential_damping),
+        cells: cells.map_or(usual.cells, usize::from),
+        ..usual
+    }
+}
+
+/// A law as `--format json` lists it.
+#[derive(Serialize)]
+struct Entry<'a> {
+    #[serde(flatten)]
+    preset: &'a Preset,
+    equations: String,
 }
 
 /// Computes what the laws do, and writes the page and its data into `directory`. The path of the
@@ -97,3 +150,30 @@ fn all(out: &mut dyn Write) -> io::Result<()> {
     }
     writeln!(out, "\n+limit_damping may be added to a name. `stickslip laws NAME` says more.")
 }
+
+/// What `laws --help` says first.
+const ABOUT: &str = "\
+List the contact laws that have names, or print one of them: those of particle codes, by the codes' \
+own keywords, with their equations, where these were read, and what was compared.
+
+A law consists of seven terms, in JSON and here: normal (linear, hertz), damping (none, linear, \
+viscoelastic, tsuji), tangential (constant, mindlin), history (displacement, force), rescaled, \
+limit_damping (true, false), end (force, overlap). Every combination is a law.
+
+Quantities are scaled: x overlap, v its rate, w tangential velocity, F normal and Q tangential force, \
+y or q history; κ stiffness, a damping, b tangential damping. Hysteretic and adhesive laws have other \
+terms and are not computed.
+
+With --out, maps of ε_t and the number of switches, the difference from the paper's law, the forces of a \
+standard impact, and where a law creates energy, for all of them on one page.";
+
+/// What `laws --help` says last.
+const EXAMPLES: &str = "\
+Examples:
+  stickslip laws
+  stickslip laws gran/hertz/history
+  stickslip laws granular/hertz/tsuji/mindlin+limit_damping --format json > law.json
+  stickslip collide --kappa 3 --psi 0.4 --damping 0.3 --law law.json --tangential-damping 3.5
+  stickslip laws --out laws --damping 0.1
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,4 +1,6 @@
-//! Points, looked up in an atlas.
+//! `locate`: points, looked up in an atlas.
+
+use std::path::PathBuf;
 
 use stickslip_files::input::atlas::{self, AnyAtlas, RunsAtlas};
 use stickslip_files::input::recipe::Given;
@@ -11,21 +13,43 @@ use stickslip_solver::Margin;
 use stickslip_tracer::{Atlas, Itinerary, Location, Point};
 
 use crate::error::Failure;
-use crate::plan::LocatePlan;
-use crate::threads;
+use crate::shared::files::{require_different, require_one_standard_input};
+use crate::shared::threads;
+
+/// Look up the switches of collisions in an atlas
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct LocateArguments {
+    /// Atlas that the command trace has written
+    #[arg(long, value_name = "ATLAS.json", help_heading = "Input")]
+    pub atlas: PathBuf,
+
+    /// CSV file with a header row that names kappa and psi, or the parameters of a system, and one
+    /// point per row; - is standard input
+    #[arg(long, value_name = "POINTS.csv", help_heading = "Input")]
+    pub batch: PathBuf,
+
+    /// CSV file for the results, one row per point in the order of the input
+    #[arg(long, value_name = "OUT.csv", help_heading = "Output")]
+    pub out: PathBuf,
+}
 
 /// Locates every point of the input.
 ///
 /// # Errors
 /// The atlas or the input cannot be used, the output cannot be written, or some points cannot be
 /// located. In the last case the output is complete.
-pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
-    let atlas = match atlas::read(&plan.atlas)? {
+pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
+    let atlas = ("--atlas", Some(&*arguments.atlas));
+    let batch = ("--batch", Some(&*arguments.batch));
+    require_one_standard_input(atlas, batch)?;
+    require_different(&[("--out", Some(&arguments.out))], &[batch, atlas])?;
+    let atlas = match atlas::read(&arguments.atlas)? {
         AnyAtlas::Collisions(atlas) => atlas,
-        AnyAtlas::Runs(atlas) => return runs(plan, &atlas),
+        AnyAtlas::Runs(atlas) => return runs(arguments, &atlas),
     };
     let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
-    write(plan, points, &LOCATED, |contact| {
+    write(arguments, points, &LOCATED, |contact| {
         let located = atlas.locate(contact);
         let region = located.region.map_err(|why| why.to_string()).map(|region| {
             let itinerary = atlas.itinerary(region);
@@ -36,10 +60,10 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
 }
 
 /// Locates every point of the input in an atlas of a system of one's own.
-fn runs(plan: &LocatePlan, found: &RunsAtlas) -> Result<(), Failure> {
+fn runs(arguments: &LocateArguments, found: &RunsAtlas) -> Result<(), Failure> {
     let RunsAtlas { atlas, axes, guards } = found;
     let points = |header: &_| TwoColumns::named(header, axes, &LOCATED_RUNS);
-    write(plan, points, &LOCATED_RUNS, |&(x, y)| {
+    write(arguments, points, &LOCATED_RUNS, |&(x, y)| {
         let point = Point::new(x, y);
         let region = region_of(atlas, &point).map(|(region, label)| {
             let (count, itinerary) = itinerary(label, guards);
@@ -55,14 +79,14 @@ type Located = (Result<[String; 3], String>, Option<f64>);
 
 /// Writes a row with the columns `names` for every point of the input.
 fn write<R: Reading>(
-    plan: &LocatePlan,
+    arguments: &LocateArguments,
     points: impl FnOnce(&ByteRecord) -> Result<R, String>,
     names: &[&str; 4],
     locate: impl Fn(&R::Case) -> Located,
 ) -> Result<(), Failure> {
-    let mut input = Input::open(&plan.input, points)?;
+    let mut input = Input::open(&arguments.batch, points)?;
     let pool = threads::pool(Some(1))?;
-    let mut table = CsvFile::create(&plan.out)?;
+    let mut table = CsvFile::create(&arguments.out)?;
     let mut text = Rows::default();
     text.fields(input.header().iter().chain(names.iter().map(|name| name.as_bytes())));
     text.end();
@@ -101,7 +125,7 @@ fn write<R: Reading>(
     }
     publish([table.store()?])?;
     match first {
-        Some(first) => Err(Failure::Unlocated { failed, rows, path: plan.out.clone(), first }),
+        Some(first) => Err(Failure::Unlocated { failed, rows, path: arguments.out.clone(), first }),
         None => Ok(()),
     }
 }
@@ -138,3 +162,25 @@ fn itinerary(label: &Itinerary, guards: &[String]) -> (String, String) {
     let more = if goes_on { "; …" } else { "" };
     (fired.len().to_string(), format!("{}{more}", names.join("; ")))
 }
+
+/// What `locate --help` says first.
+const ABOUT: &str = "\
+Look up the switches of collisions in an atlas.
+
+POINTS.csv has the columns kappa and psi; other columns pass through. OUT.csv has the columns of the \
+input followed by switch_count, itinerary, region and distance. The distance, in ψ, is that to the \
+nearest boundary of the atlas at the same κ. Within the error of a boundary, the collision itself is \
+computed, and decides. A point has no count, itinerary and region if it lies outside the window, or \
+if its collision has the switches of no region there. The first such point is named on standard \
+error, and the exit code is 1.
+
+In an atlas of a system of your own, the columns are the parameters on its axes, and event_count takes \
+the place of switch_count. Nothing is run: within the error of a boundary and in regions in doubt, a \
+point is not located.";
+
+/// What `locate --help` says last.
+const EXAMPLES: &str = "\
+Examples:
+  stickslip locate --atlas atlas.json --batch POINTS.csv --out OUT.csv
+
+Exit codes: 0 done, 1 a point cannot be located, 2 bad usage or bad input.";

@@ -1,16 +1,26 @@
-//! Manual pages. They have the same source as the help texts.
+//! `man`: manual pages. They have the same source as the help texts.
 
 use std::io;
+use std::path::PathBuf;
 
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 use stickslip_files::output::{directory, file};
 
-use crate::args::{Arguments, ManArguments};
+use super::Arguments;
 use crate::error::Failure;
 use crate::output::console::print;
 use crate::version::NAME;
+
+/// Print a manual page with all commands, or write one page for each command
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub struct ManArguments {
+    /// Directory for one page for each command; created if it is missing
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: Option<PathBuf>,
+}
 
 /// Prints one page with all commands, or writes a page for each of them.
 ///
@@ -85,3 +95,11 @@ fn sections(command: &Command) -> io::Result<String> {
 fn text(page: Vec<u8>) -> io::Result<String> {
     String::from_utf8(page).map_err(io::Error::other)
 }
+
+/// What `man --help` says last.
+const EXAMPLES: &str = "\
+Examples:
+  stickslip man | man -l -
+  stickslip man --out ~/.local/share/man/man1
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

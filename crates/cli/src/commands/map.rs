@@ -1,143 +1,189 @@
-//! A map of collisions. It is computed and stored tile by tile, and put together at the end.
+//! `map`: the restitution and the number of switches on a plane, or the runs of a system of one's
+//! own.
 
-use std::path::Path;
+mod collisions;
+mod system;
 
-use rayon::ThreadPool;
-use stickslip_figure::pictures::grid;
-use stickslip_files::map::{
-    Found, Provenance, Results, Stored, Task, Tiles, csv, npz, part_file, thumbnail,
-};
-use stickslip_files::output::file::{OutputFile, StoredFile, publish};
+use std::path::{Path, PathBuf};
+
+use stickslip_files::input::part::MapPart;
+use stickslip_files::input::range::{self, Size};
 use stickslip_files::output::picture::PictureFile;
-use stickslip_plane::sweep::{self, FailureCount};
+use stickslip_plane::Range;
 
 use crate::error::Failure;
-use crate::output::console::say;
-use crate::output::progress::Bar;
-use crate::plan::{MapFormat, MapOutput, MapPlan};
-use crate::{threads, version};
+use crate::shared::collision::CollisionArguments;
+use crate::shared::files;
+use crate::shared::law::LawArguments;
+use crate::shared::method::MethodArguments;
+use crate::shared::system::{PlaneArguments, SystemPlane};
+use crate::shared::threads::ThreadsArguments;
+pub use collisions::{finish, require_all};
 
-/// Largest number of columns, and of rows, in the picture.
-const MOST_PIXELS: usize = 1000;
+/// Compute the restitution and the number of switches on a plane
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct MapArguments {
+    /// A system of one's own.
+    #[command(flatten)]
+    pub plane: PlaneArguments,
 
-/// Computes the map or a part of it, or the rest of one that was begun before.
-///
-/// # Errors
-/// Files cannot be written, another process makes the same map, or some points have no result. In
-/// the last case the map is complete.
-pub fn run(plan: &MapPlan) -> Result<(), Failure> {
-    plan.plot.as_ref().map(PictureFile::probe).transpose()?;
-    let pool = threads::pool(plan.threads)?;
-    let task = Task::new(plan.grid, plan.engine, &version::program());
-    let part = match plan.output {
-        MapOutput::Part(part) => Some(part),
-        MapOutput::Whole(_) => None,
-    };
-    if let Some(part) = part
-        && let Some(there) = part_file::find(&plan.out, part, &task)?
-        && let Ok(failures) = there.failures()
-    {
-        say(format_args!("{}: has part {part} already", plan.out.display()));
-        // A process that was killed in its last moment has left them.
-        Tiles::open(&plan.out, task, Some(part)).map(Tiles::remove).ok();
-        return require_all(&failures, &there, &plan.out);
-    }
-    let tiles = Tiles::open(&plan.out, task, part)?;
-    let mut file = OutputFile::create_in(tiles.directory(), &plan.out)?;
-    compute(&tiles, &pool)?;
-    let failures = tiles.failures().map_err(|error| tiles.unreadable(&error))?;
-    let files = match plan.output {
-        MapOutput::Whole(format) => finish(&tiles, file, format, plan.plot.as_ref())?,
-        MapOutput::Part(part) => {
-            part_file::write(&mut file, part, &tiles).map_err(|error| file.failure(error))?;
-            vec![file.store()?]
+    /// Columns: interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = range::parse, conflicts_with = "system")]
+    pub kappa: Option<Range>,
+
+    /// Rows: interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = range::parse, conflicts_with = "system")]
+    pub psi: Option<Range>,
+
+    /// Rows, instead of --psi: interval of the impact ratio g_t/g_n, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = range::parse, conflicts_with = "system")]
+    pub ratio: Option<Range>,
+
+    /// JSON file of two bodies, as for impact; the axes are then --normal and --tangential
+    #[arg(long, value_name = "FILE.json", help_heading = "Window in SI units")]
+    #[arg(conflicts_with_all = ["system", "kappa", "psi", "ratio", "mu", "alpha", "damping", "tangential_damping"])]
+    pub bodies: Option<PathBuf>,
+
+    /// Columns: interval of the normal velocity g_n of the surfaces in m/s, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window in SI units")]
+    #[arg(value_parser = range::parse, requires = "bodies", allow_hyphen_values = true)]
+    pub normal: Option<Range>,
+
+    /// Rows: interval of the tangential velocity g_t of the surfaces in m/s, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window in SI units")]
+    #[arg(value_parser = range::parse, requires = "bodies", allow_hyphen_values = true)]
+    pub tangential: Option<Range>,
+
+    /// Number of columns and rows, at most 10000000000 points
+    #[arg(long, value_name = "WxH", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Size::parse)]
+    pub size: Size,
+
+    /// The parameters beside κ and ψ.
+    #[command(flatten, next_help_heading = "Collisions")]
+    pub collisions: CollisionArguments,
+
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
+
+    /// What computes the collisions.
+    #[command(flatten)]
+    pub method: MethodArguments,
+
+    /// File for the map: NumPy arrays in FILE.npz, or a table in FILE.csv
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub out: PathBuf,
+
+    /// Compute only part K of N of the map, 1 <= K <= N <= 1000000; FILE is then for the command
+    /// join, and may have any name
+    #[arg(long, value_name = "K/N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = MapPart::parse, conflicts_with_all = ["plot", "system"])]
+    pub part: Option<MapPart>,
+
+    /// Picture of ε_t in colours, and of the regions with equal numbers of switches
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = files::picture())]
+    pub plot: Option<PictureFile>,
+
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
+}
+/// The format of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapFormat {
+    /// NumPy arrays.
+    Npz,
+    /// A table.
+    Csv,
+}
+
+impl MapFormat {
+    /// The format that the name of the file `out` tells.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: the name tells none.
+    pub fn of(out: &Path) -> Result<Self, Failure> {
+        match out.extension().and_then(|extension| extension.to_str()) {
+            Some("npz") => Ok(Self::Npz),
+            Some("csv") => Ok(Self::Csv),
+            _ => Err(Failure::Usage(format!(
+                "--out {}: the name does not tell the format; expected FILE.npz or FILE.csv",
+                out.display()
+            ))),
         }
-    };
-    publish(files)?;
-    if let Some(part) = part.filter(|_| tiles.tiles().is_empty()) {
-        let (out, count) = (plan.out.display(), tiles.task().tiles());
-        say(format_args!("{out}: part {part} is empty, because the map has {count} tiles only"));
     }
-    let outcome = require_all(&failures, &tiles, &plan.out);
-    tiles.remove();
-    outcome
 }
 
-/// Computes all tiles that are not there yet.
-fn compute(tiles: &Tiles, pool: &ThreadPool) -> Result<(), Failure> {
-    let found = tiles.find().map_err(|error| tiles.unreadable(&error))?;
-    report(tiles, &found);
-    let task = tiles.task();
-    let kept: usize = found.kept.iter().map(|index| task.range(*index).len()).sum();
-    let bar = Bar::points(task.points_of(&tiles.tiles()) - kept);
-    for index in tiles.tiles().filter(|index| !found.kept.contains(index)) {
-        let points = task.range(index);
-        let tile = pool.install(|| sweep::compute(&task.grid, task.engine, points));
-        tiles.keep(index, &tile)?;
-        bar.advance(tile.eps_t.len());
-    }
-    Ok(())
-}
-
-/// Writes the map whose results are `stored`, and its picture, completely, except for the names of
-/// the files.
+/// Computes the map and writes it.
 ///
 /// # Errors
-/// A file cannot be written, or a tile cannot be read.
-pub fn finish(
-    stored: &impl Stored,
-    mut file: OutputFile,
-    format: MapFormat,
-    plot: Option<&PictureFile>,
-) -> Result<Vec<StoredFile>, Failure> {
-    let Task { grid, engine, program, .. } = stored.task();
-    let provenance = Provenance::new(grid, engine, program);
-    let written = match format {
-        MapFormat::Npz => npz::write(&mut file, grid, &provenance, stored),
-        MapFormat::Csv => csv::write(&mut file, grid, &provenance, stored),
-    };
-    written.map_err(|error| file.failure(error))?;
-    let picture = plot.map(|plot| draw(stored, plot)).transpose()?;
-    Ok([file.store()?].into_iter().chain(picture).collect())
-}
-
-/// Tells which of the points in the finished file `out` have no result.
-///
-/// # Errors
-/// [`Failure::Points`] names the first of them.
-pub fn require_all(
-    failures: &FailureCount,
-    stored: &impl Stored,
-    out: &Path,
-) -> Result<(), Failure> {
-    let task = stored.task();
-    match failures.failed(&task.grid, task.engine) {
-        Some(failed) => {
-            let (path, points) = (out.to_owned(), task.points_of(&stored.tiles()));
-            Err(Failure::Points { failed: Box::new(failed), points, path })
-        }
-        None => Ok(()),
+/// Options contradict each other, files cannot be used, or some points have no result. In the last
+/// case the map is complete.
+pub fn run(arguments: &MapArguments) -> Result<(), Failure> {
+    match SystemPlane::new(&arguments.plane)? {
+        Some(plane) => system::run(&plane, arguments),
+        None => collisions::run(arguments),
     }
 }
 
-/// Writes the picture completely, except for the name of its file.
-fn draw(stored: &impl Stored, plot: &PictureFile) -> Result<StoredFile, Failure> {
-    let thumbnail = thumbnail::read(stored, MOST_PIXELS);
-    let (size, results) = thumbnail.map_err(|error| stored.unreadable(&error))?;
-    Ok(plot.write(grid::draw(&stored.task().grid, size, &results))?)
-}
+/// What `map --help` says first.
+const ABOUT: &str = "\
+Compute the tangential restitution ε_t and the number of switches on a plane, with all cores.
 
-/// Says on standard error which tiles were found, if the map was begun before.
-fn report(tiles: &Tiles, found: &Found) {
-    let (kept, damaged) = (found.kept.len(), found.damaged);
-    if kept + damaged == 0 {
-        return;
-    }
-    let directory = tiles.directory().display();
-    let tiles = tiles.tiles().len();
-    let damaged = match damaged {
-        0 => String::new(),
-        _ => format!(", {damaged} damaged and made again"),
-    };
-    say(format_args!("{directory}: going on with {kept} of {tiles} tiles{damaged}"));
-}
+The interval LO:HI of each axis is divided into equal cells, W along κ and H along ψ, and the \
+collision at the centre of each cell is computed: κ_i = LO + (HI − LO)·((i + ½)/W) for i = 0 … W − 1, \
+and the same for ψ with H. An interval may therefore begin at 0, where there is no collision.
+
+The axes are --kappa and one of --psi and --ratio. For two bodies in SI units they are --normal and \
+--tangential, the velocities of the surfaces at the contact.
+
+With SYSTEM.slip, the runs of a system of your own over two of its parameters, --x and --y: the number \
+of events, and the time and the state at the end.";
+
+/// What `map --help` says last.
+const EXAMPLES: &str = "\
+Results:
+  FILE.npz has the arrays kappa (W), psi (H), with --ratio also ratio (H), and eps_t and
+  switch_count (H x W: one row for each psi). With --bodies they are normal_m_per_s (W),
+  tangential_m_per_s (H), kappa (W), psi (H x W), damping (W), eps_t and switch_count. Arrays
+  without dimensions say what made the map: damping, with --ratio mu and alpha, or the quantities
+  of the bodies; rtol and atol; method and version. FILE.csv has the same names as columns and one
+  row per point. A point that cannot be computed is NaN and -1, and the exit code is 1.
+
+  With SYSTEM.slip, FILE.npz has the two parameters (W and H) by their names, event_count (H x W,
+  of events before the end), outcome (end, rule, accumulation, event_limit, step_limit or failed),
+  end_time, end_mode, and the components of the state, end_NAME. The picture shows the number of events, the time, and the first components.
+
+  Finished tiles are kept in FILE.npz.tiles until the map is complete. After an interruption the
+  same command continues where it stopped, and the result is the same, bit for bit.
+
+Examples:
+  stickslip map --kappa 0:70 --psi 0:2.9 --size 1000x1000 --out map.npz --plot map.svg
+  stickslip map --kappa 0:20 --ratio 0:3.5 --mu 0.4 --alpha 2/7 --size 600x400 --out map.csv
+  stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
+  stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz
+  stickslip map --bodies pair.json --normal 0:200 --tangential 0:200 --size 500x500 --out si.npz
+  stickslip map examples/systems/belt.slip --x belt=0.1:1.5 --y kinetic=0.2:0.9 --size 300x300 \\
+    --out belt.npz --plot belt.svg
+
+A map in parts, as a job array of Slurm:
+  #!/bin/sh
+  #SBATCH --array=1-64
+  #SBATCH --cpus-per-task=8
+  #SBATCH --requeue
+  stickslip map --kappa 0:70 --psi 0:2.9 --size 20000x20000 --part $SLURM_ARRAY_TASK_ID/64 \\
+    --threads $SLURM_CPUS_PER_TASK --out map-$SLURM_ARRAY_TASK_ID.part
+
+  When all parts are there, the whole map is made by
+  stickslip join map-*.part --out map.npz
+
+  Each part needs its own FILE. A job that was stopped goes on when it is started again, and one
+  whose part is there has nothing to do.
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,65 +1,130 @@
-//! Runs of systems that are texts.
+//! `run`: a system of one's own, integrated through every event.
+
+mod files;
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use stickslip_expression::{Recording, System, outcome_name};
-use stickslip_figure::pictures;
-use stickslip_files::output::csv::{CsvFile, Rows};
-use stickslip_files::output::file::{StoredFile, publish};
+use stickslip_files::output::csv::CsvFile;
+use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_solver::{DynamicSwitch, Outcome, Rest};
+use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome, Rest};
 
-use crate::args::{Format, SystemArguments};
 use crate::error::Failure;
 use crate::output::console::print;
 use crate::output::text::{self, number};
-use crate::plan::{RunPlan, read};
 use crate::schema;
+use crate::shared::Format;
+use crate::shared::course::points;
+use crate::shared::files::{picture, plotted, require_different};
+use crate::shared::method::{atol, rtol};
+use crate::shared::system::{SystemRun, setting, time};
 
-/// So many components are drawn.
-const MOST_PANELS: usize = 8;
 /// So many events are printed.
 const MOST_LINES: usize = 200;
-/// Rows are written when they are so many.
-const ROWS_AT_ONCE: usize = 10_000;
+
+/// Integrate a system of your own through every event
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct RunArguments {
+    /// The system, a text as docs/systems.md describes it; - is standard input
+    #[arg(value_name = "SYSTEM.slip")]
+    pub system: PathBuf,
+
+    /// The value of a parameter; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "System")]
+    pub set: Vec<(String, f64)>,
+
+    /// Where the run ends, instead of the end that the system says
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(help_heading = "System")]
+    pub end: Option<f64>,
+
+    /// The method
+    #[arg(long, value_name = "NAME", help_heading = "Method", default_value = "dop853")]
+    #[arg(value_parser = method())]
+    pub method: EmbeddedPair,
+
+    /// Relative tolerance of a step; 1e-15 to 0.1 [default: 1e-10]
+    #[arg(long, value_name = "R", help_heading = "Method", value_parser = rtol)]
+    #[arg(allow_hyphen_values = true)]
+    pub rtol: Option<f64>,
+
+    /// Absolute tolerance of a step; above 0 [default: 1e-12]
+    #[arg(long, value_name = "T", help_heading = "Method", value_parser = atol)]
+    #[arg(allow_hyphen_values = true)]
+    pub atol: Option<f64>,
+
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
+    pub format: Format,
+
+    /// CSV file for the events, with the states before and after them
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
+    pub events: Option<PathBuf>,
+
+    /// CSV file for the state against time, at even times and on both sides of every event
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
+    pub course: Option<PathBuf>,
+
+    /// Number of even times of --course, with the start and the end; 2 to 10000000
+    #[arg(long, value_name = "N", help_heading = "Output", requires = "course")]
+    #[arg(default_value_t = 1000, allow_hyphen_values = true)]
+    #[arg(value_parser = points())]
+    pub points: usize,
+
+    /// Picture of the state against time, with modes shaded and events marked
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = picture())]
+    pub plot: Option<PictureFile>,
+}
 
 /// Runs the system, writes what is wanted, and prints how it ended.
 ///
 /// # Errors
-/// The run fails, or a file or standard output cannot be written.
-pub fn run(plan: &RunPlan) -> Result<(), Failure> {
-    let RunPlan { system, runnable, end, method, options, events, course, plot, .. } = plan;
-    for path in [events.as_deref(), course.as_ref().map(|(path, _)| &**path)] {
+/// The system cannot be read, options do not fit it, the run fails, or a file or standard output
+/// cannot be written.
+pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    let RunArguments { set, method, events, course, plot, .. } = arguments;
+    let (events, course, plot) = (events.as_deref(), course.as_deref(), plot.as_ref());
+    let outputs = [("--events", events), ("--course", course), plotted(plot)];
+    require_different(&outputs, &[("the system", Some(&*arguments.system))])?;
+    let run = SystemRun::new(&arguments.system, set, arguments.end)?;
+    let defaults = Options::default();
+    let options = Options {
+        rtol: arguments.rtol.unwrap_or(defaults.rtol),
+        atol: arguments.atol.unwrap_or(defaults.atol),
+        ..defaults
+    };
+    for path in [events, course] {
         path.map_or(Ok(()), CsvFile::probe)?;
     }
-    plot.as_ref().map_or(Ok(()), PictureFile::probe)?;
-    let found = runnable.record(*method, *end, options);
+    plot.map_or(Ok(()), PictureFile::probe)?;
+    let system = &run.system;
+    let found = run.runnable.record(*method, run.end, &options);
     let found = found.map_err(|error| Failure::Run(system.explained(&error)))?;
-    let events = events.as_deref().map(|path| write_events(path, system, &found)).transpose()?;
-    let course = course.as_ref().map(|it| write_course(it, system, &found)).transpose()?;
-    let picture = plot.as_ref().map(|plot| plot.write(Ok(draw(plan, &found)))).transpose()?;
+    let events = events.map(|path| files::write_events(path, system, &found)).transpose()?;
+    let follow = |path| files::write_course(path, arguments.points, system, &found);
+    let course = course.map(follow).transpose()?;
+    let picture = plot.map(|plot| plot.write(Ok(files::draw(&run, &found)))).transpose()?;
     publish(events.into_iter().chain(course).chain(picture))?;
-    print(|out| match plan.format {
-        Format::Json => json::lines(out, &document(plan, &found)),
-        Format::Table => table(out, plan, &found),
+    print(|out| match arguments.format {
+        Format::Json => json::lines(out, &document(&run, &found)),
+        Format::Table => table(out, &run, &found),
     })
 }
 
-/// Prints what a system consists of, or its text in the usual form.
-///
-/// # Errors
-/// It cannot be read, or standard output cannot be written.
-pub fn describe(arguments: &SystemArguments) -> Result<(), Failure> {
-    let (system, text) = read(&arguments.system)?;
-    // A text that reads as a system consists of words and signs.
-    let formatted = stickslip_expression::format(&text);
-    print(|out| {
-        let text = if arguments.format { formatted.ok() } else { None };
-        write!(out, "{}", text.unwrap_or_else(|| system.text()))
+/// Reads the name of a method.
+fn method() -> impl TypedValueParser<Value = EmbeddedPair> {
+    let names = PossibleValuesParser::new(["dopri5", "dop853"]);
+    names.map(|name| match name.as_str() {
+        "dopri5" => EmbeddedPair::Dopri5,
+        _ => EmbeddedPair::Dop853,
     })
 }
 
@@ -77,103 +142,6 @@ pub fn outcome(outcome: Outcome) -> (&'static str, Option<f64>) {
     (outcome_name(outcome), accumulation)
 }
 
-fn write_events(path: &Path, system: &System, found: &Recording) -> Result<StoredFile, Failure> {
-    let mut file = CsvFile::create(path)?;
-    let mut rows = Rows::default();
-    rows.fields(["time", "event", "mode_before", "mode_after"]);
-    for side in ["before", "after"] {
-        rows.fields(system.components.iter().map(|it| format!("{}_{side}", it.name)));
-    }
-    rows.end();
-    for (index, event) in found.events.iter().enumerate() {
-        rows.number(event.s);
-        rows.field(label(system, event));
-        rows.fields([event.from, event.to].map(|mode| system.modes[mode].name.as_str()));
-        event.before.iter().chain(&event.after).for_each(|&value| rows.number(value));
-        rows.end();
-        if index % ROWS_AT_ONCE == 0 {
-            file.write(&rows)?;
-            rows.clear();
-        }
-    }
-    file.write(&rows)?;
-    Ok(file.store()?)
-}
-
-fn write_course(
-    (path, points): &(std::path::PathBuf, usize),
-    system: &System,
-    found: &Recording,
-) -> Result<StoredFile, Failure> {
-    let mut file = CsvFile::create(path)?;
-    let mut rows = Rows::default();
-    rows.fields(["time", "mode", "event"]);
-    rows.fields(system.components.iter().map(|it| it.name.as_str()));
-    rows.end();
-    let mut written = 0;
-    let mut row = |s: f64, mode: usize, event: Option<usize>, state: &[f64]| {
-        rows.number(s);
-        rows.field(&system.modes[mode].name);
-        match event {
-            Some(event) => rows.count(event),
-            None => rows.field(""),
-        }
-        for &value in state {
-            rows.number(value);
-        }
-        rows.end();
-        written += 1;
-        if written % ROWS_AT_ONCE == 0 {
-            file.write(&rows)?;
-            rows.clear();
-        }
-        Ok::<(), Failure>(())
-    };
-    let (start, end) = (found.start(), found.run.s);
-    let mut events = found.events.iter().enumerate().peekable();
-    for point in 0..*points {
-        let part = point as f64 / (points - 1) as f64;
-        let s = if point + 1 == *points { end } else { start + part * (end - start) };
-        while let Some((index, event)) = events.next_if(|(_, event)| event.s <= s) {
-            row(event.s, event.from, Some(index), &event.before)?;
-            row(event.s, event.to, Some(index), &event.after)?;
-        }
-        if let Some(state) = found.at(s) {
-            row(s, found.mode_at(s), None, &state)?;
-        }
-    }
-    file.write(&rows)?;
-    Ok(file.store()?)
-}
-
-/// The picture of a run: its first components, those that only events change last.
-fn draw(plan: &RunPlan, found: &Recording) -> stickslip_figure::Svg {
-    let RunPlan { system, name, parameters, .. } = plan;
-    let mut shown: Vec<usize> = (0..system.components.len()).collect();
-    shown.sort_by_key(|&component| system.components[component].discrete);
-    shown.truncate(MOST_PANELS);
-    let pick = |state: &[f64]| shown.iter().map(|&component| state[component]).collect();
-    let values = system.parameters.iter().zip(parameters);
-    let values = values.map(|(it, value)| format!("{} = {}", it.name, short(*value)));
-    let values: Vec<String> = values.take(6).collect();
-    let title = format!("{name}:  {}", values.join(", "));
-    let title = title.strip_suffix(":  ").unwrap_or(&title);
-    pictures::run::draw(&pictures::run::Run {
-        title,
-        time: "time t",
-        names: shown.iter().map(|&component| &*system.components[component].name).collect(),
-        curve: found.curve(12).into_iter().map(|(s, state)| (s, pick(&state))).collect(),
-        modes: system.modes.iter().map(|mode| &*mode.name).collect(),
-        stays: found.stays().into_iter().map(|stay| (stay.mode, stay.from, stay.to)).collect(),
-        events: found.events.iter().map(|event| event.s).collect(),
-    })
-}
-
-/// A number for a title.
-fn short(value: f64) -> String {
-    stickslip_figure::number(value, 6)
-}
-
 #[derive(Serialize)]
 struct Event {
     time: f64,
@@ -186,8 +154,8 @@ struct Event {
 }
 
 /// The run as JSON.
-fn document(plan: &RunPlan, found: &Recording) -> Value {
-    let system = &plan.system;
+fn document(run: &SystemRun, found: &Recording) -> Value {
+    let system = &run.system;
     let state = |values: &[f64]| -> Map<String, Value> {
         let named = system.components.iter().zip(values);
         named.map(|(component, &value)| (component.name.clone(), json!(value))).collect()
@@ -196,7 +164,7 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
     let parameters: Map<String, Value> = system
         .parameters
         .iter()
-        .zip(&plan.parameters)
+        .zip(&run.parameters)
         .map(|(parameter, &value)| (parameter.name.clone(), json!(value)))
         .collect();
     let events: Vec<Event> = found
@@ -216,7 +184,7 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
     let (outcome, accumulation) = outcome(found.run.outcome);
     json!({
         "schema": schema::RUN,
-        "system": plan.name,
+        "system": run.name,
         "parameters": parameters,
         "outcome": outcome,
         "accumulation": accumulation,
@@ -230,9 +198,9 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
     })
 }
 
-fn table(out: &mut dyn Write, plan: &RunPlan, found: &Recording) -> io::Result<()> {
-    let system = &plan.system;
-    for (parameter, value) in system.parameters.iter().zip(&plan.parameters) {
+fn table(out: &mut dyn Write, run: &SystemRun, found: &Recording) -> io::Result<()> {
+    let system = &run.system;
+    for (parameter, value) in system.parameters.iter().zip(&run.parameters) {
         writeln!(out, "{} = {value}", parameter.name)?;
     }
     if !system.parameters.is_empty() {
@@ -274,3 +242,19 @@ fn table(out: &mut dyn Write, plan: &RunPlan, found: &Recording) -> io::Result<(
     text::pairs(out, &lines)?;
     text::work(out, &found.run.statistics)
 }
+
+/// What `run --help` says first.
+const ABOUT: &str = "\
+Integrate a system of your own, given as a text, through every event: its modes, equations and rules \
+are described in docs/systems.md. Guards are decided by bounds, so that no event is missed or invented.";
+
+/// What `run --help` says last.
+const EXAMPLES: &str = "\
+Examples:
+  stickslip run examples/systems/ball.slip
+  stickslip run examples/systems/belt.slip --set belt=0.25 --plot belt.svg --events events.csv
+  stickslip run examples/systems/relay.slip --end 20 --format json
+
+A run that ends at a limit, or at an accumulation of events without a rest, is reported as such.
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

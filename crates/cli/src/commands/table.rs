@@ -1,36 +1,105 @@
-//! A table, made, verified and written.
+//! `table`: the restitution to be looked up.
 
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
+use stickslip_files::input::bodies::read_pair;
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::{number, range};
 use stickslip_files::output::file::{OutputFile, publish};
 use stickslip_files::output::{json, table_npz};
-use stickslip_practice::tables::{self, Document, Table, Verification, Window};
+use stickslip_model::Law;
+use stickslip_plane::Range;
+use stickslip_practice::tables::{self, Document, Settings, Table, Verification, Window};
 
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::progress::Bar;
 use crate::output::text::pairs;
-use crate::plan::{TableFormat, TablePlan};
-use crate::{threads, version};
+use crate::shared::files::require_different;
+use crate::shared::study::refused;
+use crate::shared::threads::ThreadsArguments;
+use crate::version;
+
+/// Make a table of the restitution, to be looked up in nanoseconds
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct TableArguments {
+    /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Kappa, text))]
+    #[arg(required_unless_present = "bodies")]
+    pub kappa: Option<Range>,
+
+    /// Interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Psi, text))]
+    #[arg(required_unless_present = "bodies")]
+    pub psi: Option<Range>,
+
+    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// JSON file of two bodies as `impact` reads it, for a table over velocities; motions in it are
+    /// not used
+    #[arg(long, value_name = "FILE.json", help_heading = "Window of velocities")]
+    #[arg(conflicts_with_all = ["kappa", "psi", "damping"], requires_all = ["normal", "tangential"])]
+    pub bodies: Option<PathBuf>,
+
+    /// Interval of the normal velocity g_n of the surfaces in m/s, with --bodies; above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window of velocities")]
+    #[arg(allow_hyphen_values = true, requires = "bodies", value_parser = range::parse_above_0)]
+    pub normal: Option<Range>,
+
+    /// Interval of the tangential velocity g_t of the surfaces in m/s, with --bodies; above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window of velocities")]
+    #[arg(allow_hyphen_values = true, requires = "bodies", value_parser = range::parse_above_0)]
+    pub tangential: Option<Range>,
+
+    /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3
+    #[arg(long, value_name = "E", help_heading = "Table", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option, default_value = "1e-8")]
+    pub bound: f64,
+
+    /// Give the table the number of the atlas' region at each place too, with its switches
+    #[arg(long, help_heading = "Table")]
+    pub regions: bool,
+
+    /// What names in a C header begin with
+    #[arg(long, value_name = "NAME", help_heading = "Table", default_value = "stickslip")]
+    pub prefix: String,
+
+    /// File for the table: JSON, NumPy arrays or a C header; may be given more than once
+    #[arg(long, value_name = "FILE.json|.npz|.h", help_heading = "Output", required = true)]
+    pub out: Vec<PathBuf>,
+
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
+}
 
 /// Makes a table, writes its files and prints what it is.
 ///
 /// # Errors
-/// There is no table, or its files or standard output cannot be written.
-pub fn run(plan: &TablePlan) -> Result<(), Failure> {
-    let pool = threads::pool(plan.threads)?;
-    let files = plan.out.iter().map(|(path, format)| Ok((OutputFile::create(path)?, *format)));
-    let files = files.collect::<Result<Vec<_>, Failure>>()?;
-    let bar = Bar::steps();
-    let table = pool.install(|| tables::run(&plan.settings, &|progress| bar.report(progress)));
-    drop(bar);
-    let table = table?;
-    let stored = files.into_iter().map(|(file, format)| {
+/// An option is out of range, a file has no known format or is named twice, there is no table, or
+/// its files or standard output cannot be written.
+pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
+    let TableArguments { bound, regions, prefix, out, bodies, .. } = arguments;
+    let settings = Settings { window: window(arguments)?, bound: *bound, regions: *regions };
+    settings.validate().map_err(refused)?;
+    let outputs: Vec<_> = out.iter().map(|out| ("--out", Some(out.as_path()))).collect();
+    require_different(&outputs, &[("--bodies", bodies.as_deref())])?;
+    tables::require_prefix(prefix).map_err(refused)?;
+    let formats = out.iter().map(|out| TableFormat::of(out)).collect::<Result<Vec<_>, _>>()?;
+    let files = out.iter().map(|out| OutputFile::create(out)).collect::<Result<Vec<_>, _>>()?;
+    let table = arguments.threads.with_steps(|report| tables::run(&settings, report))??;
+    let stored = files.into_iter().zip(formats).map(|(file, format)| {
         let content = match format {
             TableFormat::Json => json::line(&Document::from(&table)),
             TableFormat::Npz => table_npz::archive(&table, &version::program()),
             TableFormat::Header => {
-                table.c_header(&plan.prefix).map(String::into_bytes).map_err(io::Error::other)
+                table.c_header(prefix).map(String::into_bytes).map_err(io::Error::other)
             }
         };
         let content = content.map_err(|error| file.failure(error))?;
@@ -38,6 +107,51 @@ pub fn run(plan: &TablePlan) -> Result<(), Failure> {
     });
     publish(stored.collect::<Result<Vec<_>, _>>()?)?;
     print(|out| summary(out, &table))
+}
+
+/// The window that the options give: of κ and ψ, or of velocities.
+fn window(arguments: &TableArguments) -> Result<Window, Failure> {
+    let TableArguments { kappa, psi, damping, bodies, normal, tangential, .. } = arguments;
+    match (bodies, normal, tangential, kappa, psi) {
+        (Some(file), &Some(normal_m_per_s), &Some(tangential_m_per_s), _, _) => {
+            let pair = read_pair(file, Law::PAPER)?;
+            Ok(Window::Velocities { pair, normal_m_per_s, tangential_m_per_s })
+        }
+        (None, _, _, &Some(kappa), &Some(psi)) => {
+            Ok(Window::Scaled { kappa, psi, damping: damping.unwrap_or(0.0) })
+        }
+        // The parser of the options asks for either.
+        _ => {
+            let expected = "expected --kappa and --psi, or --bodies, --normal and --tangential";
+            Err(Failure::Usage(format!("no window; {expected}")))
+        }
+    }
+}
+
+/// The format of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TableFormat {
+    /// JSON.
+    Json,
+    /// NumPy arrays.
+    Npz,
+    /// A header for C.
+    Header,
+}
+
+impl TableFormat {
+    /// The format that the name of the file `out` tells.
+    fn of(out: &Path) -> Result<Self, Failure> {
+        match out.extension().and_then(|extension| extension.to_str()) {
+            Some("json") => Ok(Self::Json),
+            Some("npz") => Ok(Self::Npz),
+            Some("h") => Ok(Self::Header),
+            _ => Err(Failure::Usage(format!(
+                "--out {}: the name does not tell the format; expected FILE.json, FILE.npz or FILE.h",
+                out.display()
+            ))),
+        }
+    }
 }
 
 fn summary(out: &mut dyn Write, table: &Table) -> io::Result<()> {
@@ -67,3 +181,32 @@ fn summary(out: &mut dyn Write, table: &Table) -> io::Result<()> {
         ],
     )
 }
+
+/// What `table --help` says first.
+const ABOUT: &str = "\
+Make a table of the restitution for programs that look up millions of collisions: over (κ, ψ) at one \
+damping, or over the velocities (g_n, g_t) of two bodies in m/s. Its errors are below a bound \
+everywhere.
+
+Polynomials follow the boundaries on which the switches of a collision change, so that a kink of \
+ε_t stays a kink. The table is compared with collisions in each of its pieces and on both sides of \
+all boundaries. Without the bound there is no table, and the exit code is 1.
+
+The contact law is the paper's. At one damping ε_n is one number, which the table has too; over \
+velocities it is a function of g_n.";
+
+/// What `table --help` says last.
+const EXAMPLES: &str = "\
+Files:
+  FILE.json  everything, for stickslip.load_table in Python and for Rust
+  FILE.npz   the same arrays for NumPy
+  FILE.h     a header for C99 and C++ with functions NAME_eps_t(kappa, psi) and, with --regions,
+             NAME_region(kappa, psi); or NAME_eps_t(g_n, g_t), NAME_eps_n(g_n) and
+             NAME_region(g_n, g_t). It needs the standard library only
+
+Examples:
+  stickslip table --kappa 0.5:100 --psi 0.01:3 --out table.h --out table.json
+  stickslip table --kappa 1:20 --psi 0.05:2.5 --damping 0.3 --bound 1e-6 --regions --out table.npz
+  stickslip table --bodies examples/glass_on_wall.json --normal 0.1:10 --tangential 0.01:20 --out t.h
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,41 +1,186 @@
-//! The errors of time steps, measured, printed and drawn.
+//! `timestep`: the errors of time steps, measured, printed and drawn.
 
-use std::io::{self, Write};
+mod table;
 
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::range::{self, OneOrRange};
+use stickslip_files::input::source::shown;
+use stickslip_files::input::{bodies, law, number};
 use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
-use stickslip_model::Contact;
-use stickslip_practice::time_steps::{self, Errors, Quantity, Row, Seconds, TimeSteps};
+use stickslip_files::output::picture::PictureFile;
+use stickslip_model::{Contact, Reduction};
+use stickslip_practice::time_steps::{self, Quantity, Scheme, Seconds, Settings, TimeSteps};
 
-use crate::args::Format;
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::progress::Bar;
-use crate::output::text::{aligned, pairs};
-use crate::plan::TimestepPlan;
-use crate::threads;
+use crate::shared::Format;
+use crate::shared::collision::reduction;
+use crate::shared::files;
+use crate::shared::law::LawArguments;
+use crate::shared::study::refused;
+use crate::shared::threads::ThreadsArguments;
+
+/// Values in an interval.
+const GRID: u16 = 8;
+
+/// Measure the errors of the time steps of particle codes
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct TimestepArguments {
+    /// Scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), or an interval with a grid of them; above 0
+    #[arg(long, value_name = "K|LO:HI", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| range::parse_one_or_range(Parameter::Kappa, text))]
+    pub kappa: Option<OneOrRange>,
+
+    /// Reduced impact ratio ψ = (g_t/g_n)·α/μ, or an interval with a grid of them; above 0
+    #[arg(long, value_name = "P|LO:HI", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| range::parse_one_or_range(Parameter::Psi, text))]
+    pub psi: Option<OneOrRange>,
+
+    /// Values in an interval, in equal ratios from end to end; 2 to 1000 [default: 8]
+    #[arg(long, value_name = "N", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub grid: Option<u16>,
+
+    /// Scaled damping a of the normal force; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// Coefficient of friction μ, of which only the energy knows; above 0 [default: 0.4]
+    #[arg(long, value_name = "M", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
+    pub mu: Option<f64>,
+
+    /// Tangential inertia α, of which only the energy knows; above 0, at most 1 [default: 2/7]
+    #[arg(long, value_name = "A", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
+    pub alpha: Option<f64>,
+
+    /// JSON file of an impact as `impact` reads it, instead of scaled parameters; - for standard
+    /// input
+    #[arg(long, value_name = "FILE.json", help_heading = "Impacts")]
+    #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "mu", "alpha"])]
+    #[arg(conflicts_with = "tangential_damping")]
+    pub bodies: Option<PathBuf>,
+
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
+
+    /// Numbers t_c/dt of steps in the undamped contact time, separated by commas; 1 to 1e7
+    #[arg(long, value_name = "N,…", help_heading = "Steps", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option)]
+    #[arg(value_delimiter = ',', default_value = "10,20,50,100,200,500,1000")]
+    pub steps: Vec<f64>,
+
+    /// Number of start phases, the parts of a step after which a contact begins; 1 to 4096
+    #[arg(long, value_name = "N", help_heading = "Steps", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=4096), default_value_t = 16)]
+    pub phases: u16,
+
+    /// Scheme of a particle code
+    #[arg(long, value_name = "NAME", help_heading = "Steps", default_value = Scheme::Lammps.name())]
+    #[arg(value_parser = scheme())]
+    pub scheme: Scheme,
+
+    /// Wanted error, for which the largest step is told; above 0
+    #[arg(long, value_name = "E", help_heading = "Steps", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option)]
+    pub error: Option<f64>,
+
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
+    pub format: Format,
+
+    /// Picture of the errors over the step, which are printed as well
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = files::picture())]
+    pub plot: Option<PictureFile>,
+
+    /// The threads.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
+}
 
 /// Measures the errors, draws them if that is wanted, and prints them.
 ///
 /// # Errors
-/// An impact cannot be computed, or the picture or standard output cannot be written.
-pub fn run(plan: &TimestepPlan) -> Result<(), Failure> {
-    if let Some(plot) = &plan.plot {
-        plot.probe()?;
+/// An option is missing or out of range, a file cannot be used, an impact cannot be computed, or
+/// the picture or standard output cannot be written.
+pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
+    let (contacts, reduction, seconds) = impacts(arguments)?;
+    let settings = Settings {
+        contacts,
+        steps_per_contact: arguments.steps.clone(),
+        phases: usize::from(arguments.phases),
+        scheme: arguments.scheme,
+        reduction,
+    };
+    settings.validate().map_err(refused)?;
+    let wanted = arguments.error;
+    if let Some(wanted) = wanted.filter(|wanted| *wanted <= 0.0) {
+        let expected = "expected a finite number above 0";
+        return Err(Failure::Usage(format!("--error = {wanted:?} is out of range; {expected}")));
     }
-    let pool = threads::pool(plan.threads)?;
-    let bar = Bar::steps();
-    let result = pool.install(|| time_steps::run(&plan.settings, &|it| bar.report(it)));
-    drop(bar);
-    let result = result?;
-    if let Some(plot) = &plan.plot {
+    let plot = arguments.plot.as_ref();
+    plot.map_or(Ok(()), PictureFile::probe)?;
+    let result = arguments.threads.with_steps(|report| time_steps::run(&settings, report))??;
+    if let Some(plot) = plot {
         publish([plot.write(Ok(result.picture()))?])?;
     }
-    print(|out| match plan.format {
-        Format::Json => json::lines(out, &Document::new(plan, &result)),
-        Format::Table => tables(out, plan, &result),
+    print(|out| match arguments.format {
+        Format::Json => json::lines(out, &Document::new(&result, seconds, wanted)),
+        Format::Table => table::write(out, &result, seconds.as_ref(), wanted),
     })
+}
+
+type Impacts = (Vec<Contact>, Reduction, Option<Seconds>);
+
+/// The impacts of the options or of the file, with what weighs their energy and their times.
+fn impacts(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
+    let Some(path) = &arguments.bodies else { return scaled(arguments) };
+    let name = arguments.law.law.as_deref();
+    let encounter = bodies::read_encounter(path, law::by_name_or_file(name)?, None)?;
+    law::permits(name, "tangential damping", encounter.contact().tangential_damping())?;
+    if encounter.is_central() {
+        let reason = "the impact is central; expected a tangential velocity, without which there \
+                      is no tangential restitution";
+        return Err(Failure::input(shown(path), reason));
+    }
+    let pair = &encounter.impact.pair;
+    let reduction = Reduction { mu: pair.surface.friction, alpha: pair.alpha };
+    Ok((vec![encounter.contact()], reduction, Some(Seconds::new(&encounter))))
+}
+
+fn scaled(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
+    let missing = |name: &str| {
+        Failure::Usage(format!("--{name} is missing; expected --kappa and --psi, or --bodies"))
+    };
+    let kappa = arguments.kappa.ok_or_else(|| missing("kappa"))?;
+    let psi = arguments.psi.ok_or_else(|| missing("psi"))?;
+    let ranged = |value| matches!(value, OneOrRange::Range(_));
+    if arguments.grid.is_some() && !ranged(kappa) && !ranged(psi) {
+        let expected = "expected with an interval LO:HI of --kappa or --psi only";
+        return Err(Failure::Usage(format!("--grid has no effect; {expected}")));
+    }
+    let (law, tangential_damping) = arguments.law.chosen()?;
+    let count = usize::from(arguments.grid.unwrap_or(GRID));
+    let mut contacts = Vec::new();
+    for kappa in kappa.values(count) {
+        for psi in psi.values(count) {
+            let contact = Contact::new(kappa, psi, arguments.damping.unwrap_or(0.0))
+                .and_then(|contact| contact.with_law(law, tangential_damping))
+                .map_err(|invalid| Failure::Usage(invalid.to_string()))?;
+            contacts.push(contact);
+        }
+    }
+    Ok((contacts, reduction(arguments.mu, arguments.alpha), None))
 }
 
 /// The errors as `--format json` prints them.
@@ -67,12 +212,12 @@ struct LargestStep {
 }
 
 impl<'a> Document<'a> {
-    fn new(plan: &TimestepPlan, result: &'a TimeSteps) -> Self {
-        let seconds = plan.seconds.map(|times| {
+    fn new(result: &'a TimeSteps, seconds: Option<Seconds>, wanted: Option<f64>) -> Self {
+        let seconds = seconds.map(|times| {
             let steps = result.rows.iter().map(|row| times.step_s(row.steps_per_contact));
             InSeconds { times, steps_s: steps.collect() }
         });
-        let largest_step = plan.wanted.map(|wanted| {
+        let largest_step = wanted.map(|wanted| {
             let [eps_t, eps_n, energy] =
                 Quantity::ALL.map(|quantity| result.largest_step(quantity, wanted));
             LargestStep { wanted, eps_t, eps_n, energy }
@@ -81,123 +226,48 @@ impl<'a> Document<'a> {
     }
 }
 
-fn tables(out: &mut dyn Write, plan: &TimestepPlan, result: &TimeSteps) -> io::Result<()> {
-    let phases = result.phases;
-    write!(out, "Errors in time steps, scheme {}, {phases} start phases, ", result.scheme.name())?;
-    match &result.contacts[..] {
-        [contact] => writeln!(
-            out,
-            "1 impact: κ = {:?}, ψ = {:?}, damping a = {:?}",
-            contact.kappa(),
-            contact.psi(),
-            contact.damping()
-        )?,
-        contacts => writeln!(out, "{} impacts", contacts.len())?,
-    }
-    if let Some(contact) = result.contacts.first().filter(|contact| !contact.obeys_paper()) {
-        writeln!(out, "Law {}", contact.law().equations())?;
-        writeln!(out, "Tangential damping b = {:?}", contact.tangential_damping())?;
-    }
-    let overturned = result.contacts.iter().filter(|it| it.start_layer().is_some()).count();
-    if overturned > 0 {
-        writeln!(
-            out,
-            "Badly conditioned: in {overturned} of the impacts the force is turned over at once, \
-             which steps reach slowly"
-        )?;
-    }
-    for quantity in Quantity::ALL {
-        writeln!(out)?;
-        let header = [name(quantity), "dt/t_c", "median", "rms", "largest", "κ", "ψ", "status"];
-        let rows = result.rows.iter().map(|row| line(result, quantity, row));
-        let header = std::iter::once(header.map(str::to_owned));
-        aligned(out, &header.chain(rows).collect::<Vec<_>>())?;
-    }
-    if let Some(seconds) = &plan.seconds {
-        in_seconds(out, seconds, result)?;
-    }
-    plan.wanted.map_or(Ok(()), |wanted| largest(out, wanted, plan.seconds.as_ref(), result))
+/// Reads the name of a scheme.
+fn scheme() -> impl TypedValueParser<Value = Scheme> {
+    let names = PossibleValuesParser::new(Scheme::ALL.map(Scheme::name));
+    names.map(|name| Scheme::find(&name).unwrap_or_default())
 }
 
-fn name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::TangentialRestitution => "ε_t",
-        Quantity::NormalRestitution => "ε_n",
-        Quantity::Energy => "energy",
-    }
-}
+/// What `timestep --help` says first.
+const ABOUT: &str = "\
+Measure the errors of the time steps of a particle code: the difference in ε_t, in ε_n and in the \
+energy after a contact between its steps of fixed length dt and a collision without steps. They \
+are told as median, root mean square and largest error over all impacts and over the parts of a \
+step after which a contact begins.
 
-/// A row of a table: the errors, and the impact with the largest.
-fn line(result: &TimeSteps, quantity: Quantity, row: &Row) -> [String; 8] {
-    let errors = row.errors(quantity);
-    let number = |of: fn(Errors) -> f64| {
-        errors.map_or_else(|| "none".to_owned(), |errors| format!("{:.2e}", of(errors)))
-    };
-    let worst = errors.and_then(|errors| result.contacts.get(errors.worst.contact));
-    let parameter = |value: Option<f64>| value.map_or_else(String::new, |it| format!("{it:.4}"));
-    let status = match (row.unfinished, row.unstable) {
-        (0, 0) => row.status.name().to_owned(),
-        (0, count) | (count, _) => {
-            let all = result.contacts.len() * result.phases;
-            format!("{}: {count} of {all}", row.status.name())
-        }
-    };
-    [
-        format!("t_c/dt = {:?}", row.steps_per_contact),
-        format!("{:.3e}", 1.0 / row.steps_per_contact),
-        number(|errors| errors.median),
-        number(|errors| errors.root_mean_square),
-        number(|errors| errors.worst.error),
-        parameter(worst.map(Contact::kappa)),
-        parameter(worst.map(Contact::psi)),
-        status,
-    ]
-}
+Steps are told as numbers t_c/dt in the undamped contact time t_c, which in scaled units is π for \
+a linear force and 3.218 for Hertz'. The energy after the contact is a part of that before.
 
-fn in_seconds(out: &mut dyn Write, seconds: &Seconds, result: &TimeSteps) -> io::Result<()> {
-    let Seconds { contact_time_s, rayleigh_time_s } = seconds;
-    writeln!(out)?;
-    pairs(
-        out,
-        &[
-            ("undamped contact time t_c [s]", format!("{contact_time_s:.4e}")),
-            ("Rayleigh time [s]", format!("{rayleigh_time_s:.4e}")),
-        ],
-    )?;
-    writeln!(out)?;
-    let header = ["", "dt [s]", "dt/Rayleigh time"].map(str::to_owned);
-    let rows = result.rows.iter().map(|row| {
-        let step = seconds.step_s(row.steps_per_contact);
-        [
-            format!("t_c/dt = {:?}", row.steps_per_contact),
-            format!("{step:.4e}"),
-            format!("{:.4}", step / rayleigh_time_s),
-        ]
-    });
-    aligned(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())
-}
+An interval of --kappa or --psi stands for a grid of values in equal ratios; with two intervals \
+all pairs are computed.";
 
-fn largest(
-    out: &mut dyn Write,
-    wanted: f64,
-    seconds: Option<&Seconds>,
-    result: &TimeSteps,
-) -> io::Result<()> {
-    writeln!(
-        out,
-        "\nLargest dt/t_c of these with errors up to {wanted:?}, as at all shorter ones"
-    )?;
-    let lines = Quantity::ALL.map(|quantity| {
-        let step = result.largest_step(quantity, wanted);
-        let text = step.map_or_else(
-            || "none".to_owned(),
-            |step| {
-                let in_seconds =
-                    seconds.map(|it| format!(", dt = {:.4e} s", it.contact_time_s * step));
-                format!("{step:?}{}", in_seconds.unwrap_or_default())
-            },
-        );
-        (name(quantity), text)
-    });
-    pairs(out, &lines)
-}
+/// What `timestep --help` says last.
+const EXAMPLES: &str = "\
+Schemes:
+  lammps   velocity Verlet, with forces at the velocities of half steps; the history advances by
+           whole steps, in the first step of a contact too; also MercuryDPM's and MFiX'
+  elapsed  the same, but in the first step of a contact the history advances by the time since it
+           began, as in older versions of MFiX
+
+Status of a step:
+  ok          all contacts end, and the steps resolve both springs
+  unstable    a spring is not resolved, and its oscillation grows from step to step
+  unfinished  some contacts do not end, so that there are no errors
+
+With --error E, the largest dt/t_c is told at which the largest error is at most E, and at all
+shorter ones of the given steps too. Nothing is promised of steps that were not given.
+
+With --bodies, steps are told in seconds and in Rayleigh times too. The file has the constants of
+the law, as `impact --help` lists them.
+
+Examples:
+  stickslip timestep --kappa 3 --psi 0.4 --damping 0.3 --law gran/hertz/history
+  stickslip timestep --kappa 1:60 --psi 0.05:2 --error 0.01 --plot errors.svg
+  stickslip timestep --bodies examples/steel_spheres.json --steps 20,50,100 --format json
+  stickslip timestep --bodies examples/hooke_spheres.json --law gran/hooke/history
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

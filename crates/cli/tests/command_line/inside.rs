@@ -3,7 +3,7 @@
 
 #![allow(dead_code, reason = "the tests need a part of each module")]
 
-#[path = "../../src/commands/batch"]
+#[path = "../../src/shared/batch"]
 mod batch {
     mod piece;
 }

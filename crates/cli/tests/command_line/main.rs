@@ -27,6 +27,7 @@ mod map_failures;
 #[cfg(unix)]
 mod map_interrupted;
 mod notebooks_data;
+mod option_tables;
 mod particle_codes;
 mod parts;
 mod parts_failures;

@@ -1,0 +1,94 @@
+//! The options that choose what computes a collision. They are the same for every command.
+
+use clap::ValueEnum;
+use stickslip_files::input::number;
+use stickslip_model::{Engine, InvalidChoice, Law, Tolerances};
+use stickslip_solver::{InvalidOption, Options};
+
+use crate::error::Failure;
+
+/// What computes a collision, and with which tolerances.
+#[derive(Clone, Debug, clap::Args)]
+pub struct MethodArguments {
+    /// What computes a collision [default: auto for maps, dop853 otherwise]
+    #[arg(long, value_enum, help_heading = "Method")]
+    pub method: Option<Method>,
+
+    /// Relative tolerance of a step; 1e-15 to 0.1
+    #[arg(long, help = tolerance_help("Relative", "1e-15 to 0.1", |tolerances| tolerances.rtol))]
+    #[arg(value_name = "R", help_heading = "Method", allow_hyphen_values = true)]
+    #[arg(value_parser = rtol)]
+    pub rtol: Option<f64>,
+
+    /// Absolute tolerance of a step; above 0
+    #[arg(long, help = tolerance_help("Absolute", "above 0", |tolerances| tolerances.atol))]
+    #[arg(value_name = "T", help_heading = "Method", allow_hyphen_values = true)]
+    #[arg(value_parser = atol)]
+    pub atol: Option<f64>,
+}
+
+/// What computes a collision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Dormand–Prince 5(4); damping 0, or 1e-8 to 1e4
+    Dopri5,
+    /// Dormand–Prince 8(5,3); damping 0, or 1e-8 to 1e4
+    Dop853,
+    /// The exact solution; damping 0, or 1e-60 to 1e4
+    Exact,
+    /// The exact solution, or dop853 if a tolerance is given
+    Auto,
+}
+
+impl MethodArguments {
+    /// The engine that the options choose for collisions with a law and a tangential damping;
+    /// `usual` is the method if none is given.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: a tolerance would have no effect.
+    pub fn engine(&self, usual: Method, law: (Law, f64)) -> Result<Engine, Failure> {
+        let Self { method, rtol, atol } = *self;
+        let method = method.unwrap_or(usual).to_possible_value();
+        let name = method.as_ref().map_or("", |value| value.get_name());
+        Engine::chosen_for(law, name, rtol, atol).map_err(|invalid| {
+            Failure::Usage(match invalid {
+                InvalidChoice::Unused { name, value } => format!(
+                    "--{name} {value:?} has no effect with --method exact, which has no \
+                     tolerances; expected with dop853 and dopri5 only"
+                ),
+                invalid => invalid.to_string(),
+            })
+        })
+    }
+}
+
+fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) -> String {
+    let [dop853, dopri5] = [&Tolerances::DOP853, &Tolerances::DOPRI5].map(tolerance);
+    format!(
+        "{name} tolerance of a step; {range} [default: {dop853:?} with dop853, {dopri5:?} with dopri5]"
+    )
+}
+
+/// Reads a relative tolerance.
+pub fn rtol(text: &str) -> Result<f64, String> {
+    parse(text, |rtol| Options { rtol, ..Options::default() })
+}
+
+/// Reads an absolute tolerance.
+pub fn atol(text: &str) -> Result<f64, String> {
+    parse(text, |atol| Options { atol, ..Options::default() })
+}
+
+/// The number in `text`, if the solver accepts the options that `options` makes with it.
+fn parse(text: &str, options: impl Fn(f64) -> Options) -> Result<f64, String> {
+    let expected = |value: f64| match options(value).validate() {
+        Ok(()) => None,
+        Err(InvalidOption { expected, .. }) => Some(expected),
+    };
+    let range = expected(f64::NAN).unwrap_or("a number");
+    let value = number::parse(text).map_err(|problem| format!("{problem}; expected {range}"))?;
+    match expected(value) {
+        None => Ok(value),
+        Some(range) => Err(format!("out of range; expected {range}")),
+    }
+}

@@ -1,0 +1,33 @@
+//! A study, computed, written into a directory, and summarised on standard output.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use stickslip_files::output::directory::prepare;
+use stickslip_files::output::study::write_study;
+use stickslip_plane::progress::Report;
+use stickslip_studies::{Study, StudyError};
+
+use super::threads::ThreadsArguments;
+use crate::error::Failure;
+use crate::output::console::print;
+
+/// Makes a study, writes its files into the directory `out`, and prints its findings.
+///
+/// # Errors
+/// Files cannot be written, which is tried first, or `make` fails.
+pub fn run(
+    out: &Path,
+    threads: ThreadsArguments,
+    make: impl FnOnce(Report<'_>) -> Result<Study, StudyError> + Send,
+) -> Result<(), Failure> {
+    prepare(out)?;
+    let study = threads.with_steps(make)??;
+    write_study(&study, out)?;
+    print(|out| study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
+}
+
+/// The failure of settings that are out of range. The settings have the names of the options.
+pub fn refused(invalid: impl Display) -> Failure {
+    Failure::Usage(format!("--{invalid}"))
+}
