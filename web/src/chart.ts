@@ -38,7 +38,7 @@ export interface Chart {
   time: string;
 }
 
-const LEFT = 46;
+const LEFT = 54;
 const RIGHT = 10;
 const GAP = 24;
 const BOTTOM = 34;

@@ -43,13 +43,20 @@ export function ofCount(count: number, by: number): Rgb {
   return COUNTS[Math.floor(count / by) % COUNTS.length] as Rgb;
 }
 
-/** The colour of an itinerary, from its code. */
+/** The colours of itineraries that were seen, in the order in which they were. */
+const seen = new Map<number, Rgb>();
+
+/** The colour of an itinerary, by its code: another one for each, and the same for a session. */
 export function ofCode(code: number): Rgb {
-  // Hues by the golden ratio, and three steps of brightness that also differ in grey.
-  const mixed = Math.imul(code ^ (code >>> 15), 0x2c1b3c6d) >>> 0;
-  const hue = ((mixed % 9973) * 0.618033988749895) % 1;
-  const light = [0.4, 0.58, 0.78][(mixed >>> 14) % 3] ?? 0.5;
-  return hsl(hue, 0.5, light);
+  let colour = seen.get(code);
+  if (!colour) {
+    // Hues by the golden ratio, and three steps of brightness that also differ in grey.
+    const index = seen.size;
+    const light = [0.8, 0.46, 0.64][index % 3] ?? 0.5;
+    colour = hsl((0.58 + index * 0.618033988749895) % 1, 0.52, light);
+    seen.set(code, colour);
+  }
+  return colour;
 }
 
 function hsl(hue: number, saturation: number, light: number): Rgb {

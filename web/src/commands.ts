@@ -50,26 +50,30 @@ export function ofWindow(state: State): Lines {
   };
 }
 
-/** A system, its run and its plane. */
-export function ofSystem(state: State, name: string): Lines {
+/** A system, its run, which starts at a time, and its plane. */
+export function ofSystem(state: State, name: string, start: number): Lines {
   const file = `${name}.slip`;
   const given = Object.entries(state.set);
-  const fixed = (names: string[]) => given.filter(([key]) => !names.includes(key)).map(([key, value]) => `--set ${key}=${value}`);
+  const others = given.filter(([key]) => key !== state.across && key !== state.up);
+  const set = (values: [string, number][]) => values.map(([key, value]) => `--set ${key}=${value}`);
   const end = state.end === null ? [] : [`--end ${state.end}`];
-  const axes = [`--x ${state.across}=${ends(state.sx, 0).join(":")}`, `--y ${state.up}=${ends(state.sy, 0).join(":")}`];
-  const plane = [...fixed([state.across, state.up]), ...end, `--max-events ${state.most}`];
+  const [across, up] = [ends(state.sx, 0), ends(state.sy, 0)];
+  const axes = [`--x ${state.across}=${across.join(":")}`, `--y ${state.up}=${up.join(":")}`];
+  const plane = [...set(others), ...end, `--max-events ${state.most}`];
   const shell = [
-    ["stickslip run", file, ...fixed([]), ...end].join(" "),
+    ["stickslip run", file, ...set(given), ...end].join(" "),
     ["stickslip trace", file, ...axes, ...plane, "--out atlas.json --plot atlas.svg"].join(" "),
   ].join("\n");
-  const own = given.map(([key, value]) => `"${key}": ${value}`).join(", ");
-  const until = state.end === null ? "" : `, end=${state.end}`;
+  const values = (of: [string, number][]) => (of.length ? [`parameters={${of.map(([key, value]) => `"${key}": ${value}`).join(", ")}}`] : []);
+  const span = state.end === null ? [] : [`(${start}, ${state.end})`];
+  const until = state.end === null ? [] : [`end=${state.end}`];
+  const family = ["system", `"${state.across}"`, `"${state.up}"`, ...values(others), ...until, `max_switches=${state.most}`];
   const python = [
     "import stickslip",
     `system = stickslip.read("${file}")`,
-    `found = system.solve(${own ? `parameters={${own}}` : ""}${own || !until ? until : until.slice(2)})`,
-    `family = stickslip.HybridFamily.of(system, "${state.across}", "${state.up}", max_switches=${state.most})`,
-    `atlas = stickslip.trace_family(family, (${ends(state.sx, 0).join(", ")}), (${ends(state.sy, 0).join(", ")}))`,
+    `found = system.solve(${[...span, ...values(given)].join(", ")})`,
+    `family = stickslip.HybridFamily.of(${family.join(", ")})`,
+    `atlas = stickslip.trace_family(family, (${across.join(", ")}), (${up.join(", ")}))`,
   ].join("\n");
   return { shell, python };
 }

@@ -22,17 +22,15 @@ export function compiled(): Promise<WebAssembly.Module> {
   return WebAssembly.compile(unpack(packed, Number(holder.dataset.size)) as BufferSource);
 }
 
-/** One worker. */
+/** One worker, which starts with its first task. */
 export class Hand {
-  private worker: Worker;
+  private worker: Worker | undefined;
   private readonly pending = new Map<number, Pending>();
   private next = 0;
   /** How often it was started again. */
   restarts = 0;
 
-  constructor(private readonly module: WebAssembly.Module) {
-    this.worker = this.start();
-  }
+  constructor(private readonly module: WebAssembly.Module) {}
 
   get busy(): boolean {
     return this.pending.size > 0;
@@ -45,17 +43,18 @@ export class Hand {
       const late = () => this.restart(`this takes longer than ${(most ?? 0) / 1000} s`);
       const timer = most === undefined ? undefined : setTimeout(late, most);
       this.pending.set(id, { resolve: resolve as Pending["resolve"], timer });
+      this.worker ??= this.start();
       this.worker.postMessage({ id, task });
     });
   }
 
-  /** Ends what the worker does, and starts another one. */
+  /** Ends what the worker does; the next task starts another one. */
   restart(reason = "cancelled"): void {
-    this.worker.terminate();
+    this.worker?.terminate();
+    this.worker = undefined;
     this.restarts += 1;
     const given = [...this.pending.values()];
     this.pending.clear();
-    this.worker = this.start();
     for (const { resolve, timer } of given) {
       clearTimeout(timer);
       resolve({ answer: { error: reason } as never, ms: 0 });
@@ -64,7 +63,7 @@ export class Hand {
 
   /** Ends the worker from outside, as a crash would. For tests. */
   crash(): void {
-    this.worker.dispatchEvent(new ErrorEvent("error", { message: "crash", cancelable: true }));
+    this.worker?.dispatchEvent(new ErrorEvent("error", { message: "crash", cancelable: true }));
   }
 
   private start(): Worker {

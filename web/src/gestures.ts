@@ -57,8 +57,10 @@ export function listen(canvas: HTMLElement, gestures: Gestures): void {
       return;
     }
     pressed.set(event.pointerId, at);
-    if (grabbed === "point") gestures.point(...at);
-    else gestures.move(at[0] - last[0], at[1] - last[1], 1, ...at);
+    if (grabbed === "point") {
+      gestures.point(...at);
+      gestures.hover(at);
+    } else gestures.move(at[0] - last[0], at[1] - last[1], 1, ...at);
   });
   const release = (event: PointerEvent) => {
     pressed.delete(event.pointerId);

@@ -121,9 +121,9 @@ class Page {
     this.showControls(state);
     const model = state.tab === "spheres" ? this.spheresModel(state) : this.systemModel(state);
     byId("no-plane").hidden = model !== undefined;
-    if (model) this.plane.show(model);
     if (state.tab === "spheres") this.contact.show(state);
     else void this.system.show(state);
+    if (model) this.plane.show(model);
     this.showLegend();
     clearTimeout(this.hashTimer);
     this.hashTimer = setTimeout(() => {
@@ -152,7 +152,7 @@ class Page {
       point: state.point,
       pinned: pinned && pinned.axes === state.axes ? pinned.point : undefined,
       boundaries: state.boundaries,
-      fast: state.law === "paper" || !scaled,
+      fast: state.law === "paper" && scaled,
       marks,
       curve: limits ? this.top.map(([kappa, psi]) => mark(kappa, psi)) : [],
       notches: limits ? few.map(({ n, kappa }) => ({ name: few.length < 14 ? `κ${[...String(n)].map((it) => "₀₁₂₃₄₅₆₇₈₉"[Number(it)]).join("")}` : "", at: mark(kappa, 1) })) : [],
@@ -268,7 +268,7 @@ class Page {
 
   private lines(): [string, Lines][] {
     const { state } = this.store;
-    if (state.tab === "system") return [["This system", ofSystem(state, nameOf(state))]];
+    if (state.tab === "system") return [["This system", ofSystem(state, nameOf(state), this.system.run?.course[0]?.[0] ?? 0)]];
     const { contact } = this.contact;
     const one: [string, Lines][] = contact ? [["This contact", ofContact(state, contact.document)]] : [];
     return [...one, ["This window", ofWindow(state)]];
@@ -408,8 +408,8 @@ class Page {
     }
     byId("pin").onclick = () => store.change({ pinned: store.state.pinned ? null : pin(store.state) });
     byId("home").onclick = () => {
-      const { state } = presetOf(this.preset);
-      store.change(store.state.tab === "spheres" ? { x: state.x, y: state.y, axes: state.axes } : { sx: state.sx, sy: state.sy });
+      const { x, y, axes } = presetOf(this.preset).state;
+      store.change(store.state.tab === "spheres" ? { x, y, axes } : this.system.home());
     };
     byId("undo").onclick = () => store.undo();
     byId("redo").onclick = () => store.redo();

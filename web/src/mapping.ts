@@ -7,6 +7,8 @@ import { STRIDE, type Axis, type MapPart, type SceneRequest } from "./types";
 
 /** Rows of a band are so many that a band takes some ten milliseconds. */
 const POINTS_OF_A_BAND = 6_000;
+/** Nearly black. */
+const EDGE = 0xff202020;
 
 export class Mapping {
   /** The picture that is shown, and its window. */
@@ -18,6 +20,7 @@ export class Mapping {
   private next: { map: MapPart; size: [number, number]; window: [Axis, Axis]; coarse: number } | undefined;
   legend: Legend | undefined;
   private wanted: Shown | undefined;
+  private edges = false;
   /** When the last map was asked for, and how long it took. */
   begun = 0;
   took = 0;
@@ -60,6 +63,18 @@ export class Mapping {
     this.redraw();
   }
 
+  /** Draws edges between itineraries, for as long as there are no boundaries. */
+  outline(edges: boolean): void {
+    if (edges === this.edges) return;
+    this.edges = edges;
+    this.paint(this.wanted);
+  }
+
+  /** Shows nothing until another map comes. */
+  forget(): void {
+    this.window = undefined;
+  }
+
   /** Shows another quantity. */
   show(shown: Shown): void {
     this.wanted = shown;
@@ -83,8 +98,14 @@ export class Mapping {
     if (!context || !this.legend || end <= first) return;
     const image = context.createImageData(width, end - first);
     const pixels = new Uint32Array(image.data.buffer);
+    const { codes } = this.map;
     for (let index = 0; index < pixels.length; index++) {
-      const [red, green, blue] = colour(this.legend, this.map, first * width + index);
+      const point = first * width + index;
+      if (this.edges && point % width > 0 && point >= width && (codes[point] !== codes[point - 1] || codes[point] !== codes[point - width])) {
+        pixels[index] = EDGE;
+        continue;
+      }
+      const [red, green, blue] = colour(this.legend, this.map, point);
       pixels[index] = 0xff000000 | (blue << 16) | (green << 8) | red;
     }
     context.putImageData(image, 0, first);

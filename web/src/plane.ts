@@ -107,6 +107,7 @@ export class Plane {
   show(model: PlaneModel): void {
     const before = this.model;
     this.model = model;
+    if (before && subject(model.scene) !== subject(before.scene)) this.mapping.forget();
     if (model.shown !== before?.shown) this.mapping.show(model.shown);
     const [width, height] = this.size.map(Math.round) as [number, number];
     const key = JSON.stringify([model.scene, width, height]);
@@ -115,7 +116,13 @@ export class Plane {
       this.mapping.compute(model.scene, width, height, model.fast ? [6, 1] : [16, 5, 2]);
     }
     this.wantAtlas();
+    this.outline();
     this.draw();
+  }
+
+  /** Until boundaries are traced, the map shows where itineraries change. */
+  private outline(): void {
+    this.mapping.outline(this.model?.boundaries === true && !this.atlas);
   }
 
   private wantAtlas(): void {
@@ -145,6 +152,7 @@ export class Plane {
       const { length } = answer.regions;
       this.atlasNote = `${length} ${length === 1 ? "region" : "regions"}${doubt}, ${answer.boundaries.length} boundaries traced in ${Math.round(ms)} ms`;
     }
+    this.outline();
     this.report();
     this.draw();
   }
@@ -226,7 +234,9 @@ export class Plane {
     if (!atlas || !this.model?.boundaries) return undefined;
     const paths = this.regionPaths(atlas);
     const context = this.canvas.getContext("2d");
-    const index = paths.findIndex((path) => context?.isPointInPath(path, x, y, "evenodd"));
+    // Paths are scaled with the canvas, and the place is not.
+    const ratio = window.devicePixelRatio || 1;
+    const index = paths.findIndex((path) => context?.isPointInPath(path, x * ratio, y * ratio, "evenodd"));
     return atlas.regions[index];
   }
 
@@ -379,6 +389,11 @@ export class Plane {
   get extent(): [number, number] {
     return [this.canvas.clientWidth, this.canvas.clientHeight];
   }
+}
+
+/** What the axes of a scene are: a picture of another subject is not shown in the meantime. */
+function subject({ kind, axes, across, up, text }: SceneRequest): string {
+  return JSON.stringify([kind, axes, across, up, text]);
 }
 
 function sceneWithoutWindow(key: string): string {

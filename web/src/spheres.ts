@@ -133,16 +133,20 @@ export class Spheres {
       side,
     }));
     for (const { x, y, side } of bodies) {
-      pen.disc(x, y, RADIUS * scale, side < 0 ? colours.slipNegative : colours.slipPositive, { colour: colours.ink, width: 1.5 });
-      for (let spoke = 0; spoke < 6; spoke++) {
-        const angle = turn + (spoke * Math.PI) / 3;
-        const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
-        const spokePath: Path = [
-          [x + 0.55 * RADIUS * scale * cos, y + 0.55 * RADIUS * scale * sin],
-          [x + 0.92 * RADIUS * scale * cos, y + 0.92 * RADIUS * scale * sin],
-        ];
-        pen.line(spokePath, { colour: colours.faint, width: spoke === 0 ? 3 : 1 });
-      }
+      // Spheres in contact are flat where they meet.
+      const from = side < 0 ? 0 : centre[0];
+      pen.within(from, 0, width / 2, height, () => {
+        pen.disc(x, y, RADIUS * scale, side < 0 ? colours.slipNegative : colours.slipPositive, { colour: colours.ink, width: 1.5 });
+        for (let spoke = 0; spoke < 6; spoke++) {
+          const angle = turn + (spoke * Math.PI) / 3;
+          const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+          const spokePath: Path = [
+            [x + 0.55 * RADIUS * scale * cos, y + 0.55 * RADIUS * scale * sin],
+            [x + 0.92 * RADIUS * scale * cos, y + 0.92 * RADIUS * scale * sin],
+          ];
+          pen.line(spokePath, { colour: colours.faint, width: spoke === 0 ? 3 : 1 });
+        }
+      });
     }
     if (sliding !== undefined) {
       const reach = 0.9 * scale;

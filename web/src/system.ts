@@ -104,6 +104,15 @@ export class SystemView {
     this.store.change({ example, text: null, set: {}, end: null, ...(plane ?? { across: "", up: "" }) });
   }
 
+  /** The window in which the plane of the system is shown first. */
+  home(): Pick<State, "sx" | "sy"> {
+    const { across, up, example, text } = this.store.state;
+    const plane = text === null ? EXAMPLES[example]?.plane : undefined;
+    if (plane && plane.across === across && plane.up === up) return { sx: plane.sx, sy: plane.sy };
+    const axis = (name: string): Axis => ({ low: this.rangeOf(name)[0], high: this.rangeOf(name)[1], log: false });
+    return { sx: axis(across), sy: axis(up) };
+  }
+
   private axis(key: "across" | "up", name: string): void {
     const { state } = this.store;
     const other = key === "across" ? state.up : state.across;

@@ -297,10 +297,9 @@ pub fn limits([low, high]: [f64; 2]) -> Value {
     const POINTS: u32 = 200;
     const MOST: u32 = 400;
     let ok = low > 0.0 && low < high && high.is_finite();
-    let places = if ok { 0..=POINTS } else { 1..=0 };
     let at = |index: u32| low * (high / low).powf(f64::from(index) / f64::from(POINTS));
-    let top: Vec<[f64; 2]> =
-        places.map(at).map(|kappa| [kappa, exact::top_boundary(kappa)]).collect();
+    let places = (0..=POINTS).filter(|_| ok).map(at);
+    let top: Vec<[f64; 2]> = places.map(|kappa| [kappa, exact::top_boundary(kappa)]).collect();
     let small = (1..=MOST).map(exact::small_impact_boundary);
     let small: Vec<f64> = small.filter(|kappa| (low..=high).contains(kappa)).collect();
     json!({ "top": top, "small": small })

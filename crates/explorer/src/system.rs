@@ -75,8 +75,8 @@ fn read(text: &str) -> Result<System, Value> {
     )
 }
 
-fn said(error: impl ToString) -> Value {
-    json!({ "error": error.to_string() })
+fn said(error: impl std::fmt::Display) -> Value {
+    json!({ "error": format!("{error}") })
 }
 
 /// The values of the parameters of a system, some of which are set.
