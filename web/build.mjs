@@ -22,13 +22,25 @@ const MOST_BYTES = 1_500_000;
 /** Compiles the module. */
 function compile() {
   const sysroot = execFileSync("rustc", ["--print", "sysroot"], { encoding: "utf8" }).trim();
-  const args = ["build", "--target", TRIPLE, "--profile", "web", "-p", "stickslip-explorer", "--locked"];
+  const args = [
+    "build",
+    "--target",
+    TRIPLE,
+    "--profile",
+    "web",
+    "-p",
+    "stickslip-explorer",
+    "--locked",
+  ];
   const env = { ...process.env, CARGO_TARGET_DIR: target };
   if (!existsSync(join(sysroot, "lib", "rustlib", TRIPLE))) {
     args.push("-Z", "build-std=std,panic_abort");
     env.RUSTC = "/usr/bin/rustc";
     env.RUSTC_BOOTSTRAP = "1";
-    env.CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER = join(sysroot, "lib/rustlib/x86_64-unknown-linux-gnu/bin/rust-lld");
+    env.CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER = join(
+      sysroot,
+      "lib/rustlib/x86_64-unknown-linux-gnu/bin/rust-lld",
+    );
   }
   execFileSync("cargo", args, { cwd: root, env, stdio: "inherit" });
 }
@@ -76,7 +88,11 @@ async function bundle(entry) {
 }
 
 async function css() {
-  const { outputFiles } = await build({ entryPoints: [join(here, "src/style.css")], minify: true, write: false });
+  const { outputFiles } = await build({
+    entryPoints: [join(here, "src/style.css")],
+    minify: true,
+    write: false,
+  });
   return outputFiles[0].text.trim();
 }
 
@@ -91,7 +107,9 @@ async function page() {
   };
   const frame = readFileSync(join(here, "src/page.html"), "utf8");
   const html = frame.replace(/@(STYLE|SIZE|WASM|WORKER|MAIN)@/g, (_, name) => parts[name]);
-  const sizes = Object.entries(parts).map(([name, text]) => `${name.toLowerCase()} ${Math.round(text.length / 1000)} kB`);
+  const sizes = Object.entries(parts).map(
+    ([name, text]) => `${name.toLowerCase()} ${Math.round(text.length / 1000)} kB`,
+  );
   const bytes = Buffer.byteLength(html);
   console.log(`page ${Math.round(bytes / 1000)} kB: ${sizes.join(", ")}`);
   if (bytes > MOST_BYTES) throw new Error(`the page has more than ${MOST_BYTES} bytes`);
@@ -104,7 +122,8 @@ if (mode !== "--page") compile();
 execFileSync(join(here, "node_modules/.bin/tsc"), ["--noEmit"], { cwd: here, stdio: "inherit" });
 const html = await page();
 if (mode === "--check") {
-  if (readFileSync(out, "utf8") !== html) throw new Error("crates/page/explorer.html is not what its sources make; run `node build.mjs`");
+  if (readFileSync(out, "utf8") !== html)
+    throw new Error("crates/page/explorer.html is not what its sources make; run `node build.mjs`");
 } else {
   mkdirSync(dirname(out), { recursive: true });
   writeFileSync(out, html);

@@ -4,25 +4,51 @@ export type Rgb = [number, number, number];
 
 /** Blue for reversal, white, orange for going on. */
 const DIVERGING: Rgb[] = [
-  [8, 48, 107], [33, 102, 172], [103, 169, 207], [209, 229, 240], [247, 247, 247],
-  [253, 219, 181], [244, 165, 82], [204, 99, 20], [127, 59, 8],
+  [8, 48, 107],
+  [33, 102, 172],
+  [103, 169, 207],
+  [209, 229, 240],
+  [247, 247, 247],
+  [253, 219, 181],
+  [244, 165, 82],
+  [204, 99, 20],
+  [127, 59, 8],
 ];
 /** Viridis: dark to bright, even in grey. */
 const SEQUENTIAL: Rgb[] = [
-  [68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129],
-  [92, 200, 99], [170, 220, 50], [253, 231, 37],
+  [68, 1, 84],
+  [71, 44, 122],
+  [59, 81, 139],
+  [44, 113, 142],
+  [33, 144, 141],
+  [39, 173, 129],
+  [92, 200, 99],
+  [170, 220, 50],
+  [253, 231, 37],
 ];
 /** Counts: brightness alternates, so that neighbours differ. */
 const COUNTS: Rgb[] = [
-  [250, 246, 233], [171, 217, 233], [44, 123, 182], [253, 205, 124], [215, 99, 41], [118, 55, 122],
-  [199, 165, 207], [17, 94, 89], [128, 205, 193], [140, 81, 10], [223, 194, 125], [64, 64, 64],
+  [250, 246, 233],
+  [171, 217, 233],
+  [44, 123, 182],
+  [253, 205, 124],
+  [215, 99, 41],
+  [118, 55, 122],
+  [199, 165, 207],
+  [17, 94, 89],
+  [128, 205, 193],
+  [140, 81, 10],
+  [223, 194, 125],
+  [64, 64, 64],
 ];
 
 function along(stops: Rgb[], at: number): Rgb {
   const place = Math.max(0, Math.min(1, at)) * (stops.length - 1);
   const index = Math.min(stops.length - 2, Math.floor(place));
   const [one, other] = [stops[index] as Rgb, stops[index + 1] as Rgb];
-  return one.map((it, channel) => Math.round(it + ((other[channel] ?? 0) - it) * (place - index))) as Rgb;
+  return one.map((it, channel) =>
+    Math.round(it + ((other[channel] ?? 0) - it) * (place - index)),
+  ) as Rgb;
 }
 
 function table(stops: Rgb[]): Rgb[] {

@@ -15,16 +15,30 @@ export interface Lines {
 export function ofContact(state: State, { parameters }: Collision): Lines {
   const scaled = state.axes === "kappa-psi" || state.axes === "velocities";
   const { kappa, psi, damping } = parameters;
-  const place = scaled ? [`--kappa ${kappa}`, `--psi ${psi}`] : [`--kappa ${kappa}`, `--ratio ${state.point[1]}`, ...reduction(state)];
-  const shell = ["stickslip collide", ...place, ...options(state, damping), "--method auto"].join(" ");
+  const place = scaled
+    ? [`--kappa ${kappa}`, `--psi ${psi}`]
+    : [`--kappa ${kappa}`, `--ratio ${state.point[1]}`, ...reduction(state)];
+  const shell = ["stickslip collide", ...place, ...options(state, damping), "--method auto"].join(
+    " ",
+  );
   const words = [`kappa=${kappa}`, `psi=${psi}`, ...keywords(state, damping)].join(", ");
-  return { shell, python: `import stickslip\ncollision = stickslip.collide(${words})\nprint(collision)` };
+  return {
+    shell,
+    python: `import stickslip\ncollision = stickslip.collide(${words})\nprint(collision)`,
+  };
 }
 
 /** The boundaries of a window. */
 export function ofWindow(state: State): Lines {
   if (state.axes === "velocities") {
-    const { radius_m, young_modulus_pa, poisson_ratio, density_kg_per_m3, tangential_stiffness_kg_per_s2, damping_time_s } = state.bodies;
+    const {
+      radius_m,
+      young_modulus_pa,
+      poisson_ratio,
+      density_kg_per_m3,
+      tangential_stiffness_kg_per_s2,
+      damping_time_s,
+    } = state.bodies;
     const python = [
       "import numpy as np",
       "from stickslip import Bodies, Material, Sphere, Surface, impact",
@@ -39,7 +53,9 @@ export function ofWindow(state: State): Lines {
   const factor = state.axes === "axis-ratio" ? 1 / state.alpha : 1;
   const [kappa, other] = [ends(state.x).map((it) => it * factor), ends(state.y)];
   const ratio = state.axes !== "kappa-psi";
-  const second = ratio ? [`--ratio ${other.join(":")}`, ...reduction(state)] : [`--psi ${other.join(":")}`];
+  const second = ratio
+    ? [`--ratio ${other.join(":")}`, ...reduction(state)]
+    : [`--psi ${other.join(":")}`];
   const window = [`--kappa ${kappa.join(":")}`, ...second, ...options(state, state.damping)];
   const words = [`kappa=(${kappa.join(", ")})`, `${ratio ? "ratio" : "psi"}=(${other.join(", ")})`];
   if (ratio) words.push(`mu=${state.mu}`, `alpha=${state.alpha}`);
@@ -64,10 +80,18 @@ export function ofSystem(state: State, name: string, start: number): Lines {
     ["stickslip run", file, ...set(given), ...end].join(" "),
     ["stickslip trace", file, ...axes, ...plane, "--out atlas.json --plot atlas.svg"].join(" "),
   ].join("\n");
-  const values = (of: [string, number][]) => (of.length ? [`parameters={${of.map(([key, value]) => `"${key}": ${value}`).join(", ")}}`] : []);
+  const values = (of: [string, number][]) =>
+    of.length ? [`parameters={${of.map(([key, value]) => `"${key}": ${value}`).join(", ")}}`] : [];
   const span = state.end === null ? [] : [`(${start}, ${state.end})`];
   const until = state.end === null ? [] : [`end=${state.end}`];
-  const family = ["system", `"${state.across}"`, `"${state.up}"`, ...values(others), ...until, `max_switches=${state.most}`];
+  const family = [
+    "system",
+    `"${state.across}"`,
+    `"${state.up}"`,
+    ...values(others),
+    ...until,
+    `max_switches=${state.most}`,
+  ];
   const python = [
     "import stickslip",
     `system = stickslip.read("${file}")`,
@@ -85,13 +109,21 @@ function reduction({ mu, alpha }: State): string[] {
 function options({ axes, law, tangential }: State, damping: number): string[] {
   const given = damping > 0 ? [`--damping ${damping}`] : [];
   if (law === "paper" || axes === "velocities") return given;
-  return [...given, `--law ${law}`, ...(tangential > 0 ? [`--tangential-damping ${tangential}`] : [])];
+  return [
+    ...given,
+    `--law ${law}`,
+    ...(tangential > 0 ? [`--tangential-damping ${tangential}`] : []),
+  ];
 }
 
 function keywords({ axes, law, tangential }: State, damping: number): string[] {
   const given = damping > 0 ? [`damping=${damping}`] : [];
   if (law === "paper" || axes === "velocities") return given;
-  return [...given, `law="${law}"`, ...(tangential > 0 ? [`tangential_damping=${tangential}`] : [])];
+  return [
+    ...given,
+    `law="${law}"`,
+    ...(tangential > 0 ? [`tangential_damping=${tangential}`] : []),
+  ];
 }
 
 function ends({ low, high }: Axis, least = LEAST): number[] {

@@ -53,7 +53,10 @@ export class ContactView {
       const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
       if (!by || !this.chart) return;
       const { start, end } = this.chart;
-      this.cursor = Math.max(start, Math.min(end, (this.cursor ?? start) + (by * (end - start)) / 100));
+      this.cursor = Math.max(
+        start,
+        Math.min(end, (this.cursor ?? start) + (by * (end - start)) / 100),
+      );
       this.spheres.seek(this.cursor);
       this.draw();
       event.preventDefault();
@@ -124,9 +127,14 @@ export class ContactView {
     const law = this.law(state);
     const factor = (state.mu * state.mu) / state.alpha;
     const other = state.pinned;
-    const pinned = other && this.pinned
-      ? { contact: this.pinned, law: this.law(other), factor: (other.mu * other.mu) / other.alpha }
-      : undefined;
+    const pinned =
+      other && this.pinned
+        ? {
+            contact: this.pinned,
+            law: this.law(other),
+            factor: (other.mu * other.mu) / other.alpha,
+          }
+        : undefined;
     this.chart = chartOf(contact, { law, factor, ...(pinned ? { pinned } : {}) });
     this.canvas.setAttribute("aria-label", `Course of the contact. ${described(this.chart)}`);
     this.spheres.show(contact, this.course, state.mu, state.alpha);
@@ -156,14 +164,34 @@ export class ContactView {
 /** The part of a state that makes a contact. */
 export function pin(state: State): Pinned {
   const { axes, point, law, damping, tangential, mu, alpha, bodies } = state;
-  return { axes, point, law, damping, tangential, mu, alpha, bodies: axes === "velocities" ? bodies : STEEL };
+  return {
+    axes,
+    point,
+    law,
+    damping,
+    tangential,
+    mu,
+    alpha,
+    bodies: axes === "velocities" ? bodies : STEEL,
+  };
 }
 
 /** The itinerary with one mark for each phase. */
 export function phases(itinerary: string): HTMLElement {
-  const names: Record<string, string> = { "+": "slip on side +1", "-": "slip on side −1", o: "stick" };
+  const names: Record<string, string> = {
+    "+": "slip on side +1",
+    "-": "slip on side −1",
+    o: "stick",
+  };
   const marks = [...itinerary].map((char) =>
-    make("i", { class: char === "o" ? "stick" : char === "+" ? "positive" : "negative", title: names[char] ?? "" }, char === "-" ? "−" : char),
+    make(
+      "i",
+      {
+        class: char === "o" ? "stick" : char === "+" ? "positive" : "negative",
+        title: names[char] ?? "",
+      },
+      char === "-" ? "−" : char,
+    ),
   );
   const told = [...itinerary].map((char) => names[char]).join(", ");
   return make("span", { class: "itinerary", role: "img", "aria-label": told }, ...marks);
@@ -182,28 +210,87 @@ function facts(now: Collision, pinned: Collision | undefined): Node[] {
     ["contact time", (it) => fixed(it.contact_time, 9)],
     ["energy lost", (it) => `${fixed(100 * it.energy_lost, 3)} %`],
     ["error of εₜ", error],
-    ["distance from another itinerary", (it) => (it.estimate ? `${fixed(100 * it.estimate.distance, 3)} % of ψ` : "—")],
+    [
+      "distance from another itinerary",
+      (it) => (it.estimate ? `${fixed(100 * it.estimate.distance, 3)} % of ψ` : "—"),
+    ],
     ["κ, ψ", (it) => `${short(it.parameters.kappa, 7)}, ${short(it.parameters.psi, 7)}`],
     ["damping", (it) => short(it.parameters.damping, 6)],
   ];
   if (now.units) {
     const { time_s, length_m, force_n } = now.units;
-    rows.push(["units of time, length, force", (it) => (it === now ? `${short(time_s, 4)} s, ${short(length_m, 4)} m, ${short(force_n, 4)} N` : "")]);
+    rows.push([
+      "units of time, length, force",
+      (it) =>
+        it === now ? `${short(time_s, 4)} s, ${short(length_m, 4)} m, ${short(force_n, 4)} N` : "",
+    ]);
   }
-  const head = pinned ? [make("tr", {}, make("td"), make("th", { scope: "col" }, "point"), make("th", { scope: "col", class: "pinned" }, "pinned"))] : [];
+  const head = pinned
+    ? [
+        make(
+          "tr",
+          {},
+          make("td"),
+          make("th", { scope: "col" }, "point"),
+          make("th", { scope: "col", class: "pinned" }, "pinned"),
+        ),
+      ]
+    : [];
   const body = rows.map(([name, of]) =>
-    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, of(now)), pinned ? make("td", { class: "pinned" }, of(pinned)) : undefined),
+    make(
+      "tr",
+      {},
+      make("th", { scope: "row" }, name),
+      make("td", {}, of(now)),
+      pinned ? make("td", { class: "pinned" }, of(pinned)) : undefined,
+    ),
   );
   const summary = `${now.switch_count} switches, εₜ ${fixed(now.eps_t, 4)}`;
-  return [make("table", { class: "facts", "aria-label": `Results: ${summary}` }, make("tbody", {}, ...head, ...body))];
+  return [
+    make(
+      "table",
+      { class: "facts", "aria-label": `Results: ${summary}` },
+      make("tbody", {}, ...head, ...body),
+    ),
+  ];
 }
 
-function switchTable({ switches, start_margin }: Collision & { start_margin?: number }): HTMLElement {
-  if (!switches.length) return make("p", { class: "hint" }, "No switch: the contact is sliding from its beginning to its end.");
-  const header = ["", "time", "to", "side", "spring y", "velocity w"].map((name) => make("th", { scope: "col" }, name));
-  const rows = switches.map((it, index) =>
-    make("tr", {}, ...[String(index + 1), fixed(it.time, 9), it.to, it.side > 0 ? "+1" : "−1", short(it.spring, 9), short(it.velocity, 9)].map((text) => make("td", {}, text))),
+function switchTable({
+  switches,
+  start_margin,
+}: Collision & { start_margin?: number }): HTMLElement {
+  if (!switches.length)
+    return make(
+      "p",
+      { class: "hint" },
+      "No switch: the contact is sliding from its beginning to its end.",
+    );
+  const header = ["", "time", "to", "side", "spring y", "velocity w"].map((name) =>
+    make("th", { scope: "col" }, name),
   );
-  const note = start_margin === undefined ? undefined : make("caption", {}, `margin at the start ${short(start_margin, 4)}`);
-  return make("table", { class: "switches" }, note, make("thead", {}, make("tr", {}, ...header)), make("tbody", {}, ...rows));
+  const rows = switches.map((it, index) =>
+    make(
+      "tr",
+      {},
+      ...[
+        String(index + 1),
+        fixed(it.time, 9),
+        it.to,
+        it.side > 0 ? "+1" : "−1",
+        short(it.spring, 9),
+        short(it.velocity, 9),
+      ].map((text) => make("td", {}, text)),
+    ),
+  );
+  const note =
+    start_margin === undefined
+      ? undefined
+      : make("caption", {}, `margin at the start ${short(start_margin, 4)}`);
+  return make(
+    "table",
+    { class: "switches" },
+    note,
+    make("thead", {}, make("tr", {}, ...header)),
+    make("tbody", {}, ...rows),
+  );
 }

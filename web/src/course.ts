@@ -5,13 +5,23 @@ import { roomy } from "./scale";
 import { theme } from "./theme";
 import type { Contact, Law } from "./types";
 
-const NAMES = ["time", "compression", "normal_velocity", "normal_force", "spring", "tangential_force", "velocity", "sliding"] as const;
+const NAMES = [
+  "time",
+  "compression",
+  "normal_velocity",
+  "normal_force",
+  "spring",
+  "tangential_force",
+  "velocity",
+  "sliding",
+] as const;
 export type Course = Record<(typeof NAMES)[number], Float64Array>;
 
 /** The columns of a course. */
 export function columns({ course, stride }: Contact): Course {
   const count = course.length / stride;
-  const column = (place: number) => Float64Array.from({ length: count }, (_, index) => course[index * stride + place] as number);
+  const column = (place: number) =>
+    Float64Array.from({ length: count }, (_, index) => course[index * stride + place] as number);
   return Object.fromEntries(NAMES.map((name, place) => [name, column(place)])) as Course;
 }
 
@@ -25,7 +35,12 @@ export interface Energies {
 }
 
 /** The energies over time: `factor` is μ²/α, which makes the tangential ones comparable. */
-export function energies(contact: Contact, course: Course, law: Law | undefined, factor: number): Energies {
+export function energies(
+  contact: Contact,
+  course: Course,
+  law: Law | undefined,
+  factor: number,
+): Energies {
   const { kappa, psi } = contact.document.parameters;
   const all = 0.5 * (1 + factor * psi * psi);
   const each = (of: (index: number) => number) => course.time.map((_, index) => of(index) / all);
@@ -41,7 +56,9 @@ export function energies(contact: Contact, course: Course, law: Law | undefined,
     const x = course.compression[index]!;
     return law?.mindlin ? (x > 0 ? held / Math.sqrt(x) : 0) : held;
   });
-  const lost = course.time.map((_, index) => 1 - normal[index]! - tangential[index]! - compression[index]! - spring[index]!);
+  const lost = course.time.map(
+    (_, index) => 1 - normal[index]! - tangential[index]! - compression[index]! - spring[index]!,
+  );
   return { normal, tangential, compression, spring, lost };
 }
 
@@ -58,10 +75,20 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
   const course = columns(contact);
   const energy = energies(contact, course, law, factor);
   const other = pinned && { course: columns(pinned.contact) };
-  const otherEnergy = pinned && other && energies(pinned.contact, other.course, pinned.law, pinned.factor);
+  const otherEnergy =
+    pinned && other && energies(pinned.contact, other.course, pinned.law, pinned.factor);
   const ghost = (values: Float64Array | undefined): Curve[] =>
     values && other
-      ? [{ name: "pinned", colour: colours.pinned, width: 1.3, dash: [5, 3], quiet: true, path: Array.from(values, (value, index) => [other.course.time[index]!, value]) }]
+      ? [
+          {
+            name: "pinned",
+            colour: colours.pinned,
+            width: 1.3,
+            dash: [5, 3],
+            quiet: true,
+            path: Array.from(values, (value, index) => [other.course.time[index]!, value]),
+          },
+        ]
       : [];
   const limit = course.normal_force;
   const negative = limit.map((value) => -value);
@@ -73,10 +100,20 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
       ...ghost(other?.course.tangential_force),
       { name: "limits ±F", colour: colours.normal, width: 1.3, dash: [4, 3], values: limit },
       { name: "", colour: colours.normal, width: 1.3, dash: [4, 3], values: negative, quiet: true },
-      { name: "tangential Fₜ/μ", colour: colours.force, width: 2.2, values: course.tangential_force },
+      {
+        name: "tangential Fₜ/μ",
+        colour: colours.force,
+        width: 2.2,
+        values: course.tangential_force,
+      },
     ],
   };
-  const single = (title: string, name: string, colour: string, key: "velocity" | "spring"): Panel => ({
+  const single = (
+    title: string,
+    name: string,
+    colour: string,
+    key: "velocity" | "spring",
+  ): Panel => ({
     title,
     ...around([course[key], ...(other ? [other.course[key]] : [])]),
     curves: [...ghost(other?.course[key]), { name, colour, values: course[key] }],
@@ -127,7 +164,10 @@ function shades(course: Course): [number, number, string][] {
 }
 
 function largest(columns: Float64Array[]): number {
-  return columns.reduce((most, column) => column.reduce((so, it) => Math.max(so, Math.abs(it)), most), 0);
+  return columns.reduce(
+    (most, column) => column.reduce((so, it) => Math.max(so, Math.abs(it)), most),
+    0,
+  );
 }
 
 function symmetric(most: number): { low: number; high: number } {
@@ -136,8 +176,14 @@ function symmetric(most: number): { low: number; high: number } {
 }
 
 function around(columns: Float64Array[]): { low: number; high: number } {
-  const low = columns.reduce((so, column) => column.reduce((least, it) => Math.min(least, it), so), 0);
-  const high = columns.reduce((so, column) => column.reduce((most, it) => Math.max(most, it), so), 0);
+  const low = columns.reduce(
+    (so, column) => column.reduce((least, it) => Math.min(least, it), so),
+    0,
+  );
+  const high = columns.reduce(
+    (so, column) => column.reduce((most, it) => Math.max(most, it), so),
+    0,
+  );
   const [from, to] = roomy(low, high);
   return { low: from, high: to };
 }

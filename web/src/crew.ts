@@ -67,7 +67,9 @@ export class Hand {
   }
 
   private start(): Worker {
-    code ??= URL.createObjectURL(new Blob([byId("worker").textContent ?? ""], { type: "text/javascript" }));
+    code ??= URL.createObjectURL(
+      new Blob([byId("worker").textContent ?? ""], { type: "text/javascript" }),
+    );
     const worker = new Worker(code);
     worker.onmessage = ({ data }: MessageEvent<{ id: number } & Result<never>>) => {
       const pending = this.pending.get(data.id);

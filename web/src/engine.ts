@@ -49,7 +49,13 @@ export class Engine {
   }
 
   /** Rows of a map. */
-  map(scene: SceneRequest, columns: number, rows: number, first: number, end: number): Answer | MapPart {
+  map(
+    scene: SceneRequest,
+    columns: number,
+    rows: number,
+    first: number,
+    end: number,
+  ): Answer | MapPart {
     const refused = this.show(scene);
     if (refused) return refused;
     const { exports } = this;
@@ -68,7 +74,11 @@ export class Engine {
     if (found.error) return found;
     const { exports } = this;
     if (exports.course(x, y, intervals) === 0) return { error: this.text() };
-    const numbers = new Float64Array(exports.memory.buffer, exports.numbers_ptr(), exports.numbers_len());
+    const numbers = new Float64Array(
+      exports.memory.buffer,
+      exports.numbers_ptr(),
+      exports.numbers_len(),
+    );
     return { document: found, course: numbers.slice(), stride: exports.course_stride() };
   }
 
@@ -85,6 +95,8 @@ export class Engine {
 
   private text(): string {
     const { exports } = this;
-    return this.decoder.decode(new Uint8Array(exports.memory.buffer, exports.text_ptr(), exports.text_len()));
+    return this.decoder.decode(
+      new Uint8Array(exports.memory.buffer, exports.text_ptr(), exports.text_len()),
+    );
   }
 }

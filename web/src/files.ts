@@ -41,7 +41,9 @@ export function drawing(chart: Chart): Drawing {
 /** The course of a contact as a table. */
 export function courseTable(course: Course): string {
   const names = Object.keys(course) as (keyof Course)[];
-  const rows = Array.from(course.time, (_, index) => names.map((name) => course[name][index]).join(","));
+  const rows = Array.from(course.time, (_, index) =>
+    names.map((name) => course[name][index]).join(","),
+  );
   return `${names.join(",")}\n${rows.join("\n")}\n`;
 }
 
@@ -56,7 +58,9 @@ export function mapTable(plane: Plane, names: [string, string], fields: string[]
     for (let column = 0; column < columns; column++) {
       const point = row * columns + column;
       const count = map.counts[point] as number;
-      const values = fields.flatMap((name, place) => (name ? [map.values[point * STRIDE + place]] : []));
+      const values = fields.flatMap((name, place) =>
+        name ? [map.values[point * STRIDE + place]] : [],
+      );
       const across = value(window[0], (column + 0.5) / columns);
       lines.push([across, up, count === NO_COUNT ? "" : count, ...values].join(","));
     }
@@ -66,6 +70,7 @@ export function mapTable(plane: Plane, names: [string, string], fields: string[]
 
 /** A table of named columns. */
 export function table(header: string[], rows: (string | number)[][]): string {
-  const field = (it: string | number) => (/[",\n]/.test(String(it)) ? `"${String(it).replaceAll('"', '""')}"` : String(it));
+  const field = (it: string | number) =>
+    /[",\n]/.test(String(it)) ? `"${String(it).replaceAll('"', '""')}"` : String(it);
   return `${[header, ...rows].map((row) => row.map(field).join(",")).join("\n")}\n`;
 }

@@ -46,8 +46,12 @@ function read(key: keyof State, text: string): Json {
 function fits(value: Json, model: Json, key: keyof State): boolean {
   if (key === "set") return isRecord(value) && Object.values(value).every(isNumber);
   if (key === "end") return value === null || isNumber(value);
-  if (key === "pinned") return value === null || (isRecord(value) && same(value, { ...DEFAULT, point: [1, 1] }, PINNED));
-  if (Array.isArray(model)) return Array.isArray(value) && value.length === model.length && value.every(isNumber);
+  if (key === "pinned")
+    return (
+      value === null || (isRecord(value) && same(value, { ...DEFAULT, point: [1, 1] }, PINNED))
+    );
+  if (Array.isArray(model))
+    return Array.isArray(value) && value.length === model.length && value.every(isNumber);
   if (isRecord(model)) return isRecord(value) && same(value, model, Object.keys(model));
   return typeof value === typeof model && (typeof value !== "number" || isNumber(value));
 }

@@ -1,35 +1,41 @@
 // The page: what is where, and what changes what.
 
-import { isBright, css, ofCode, ofCount, ramp } from "./colours";
 import { ofContact, ofSystem, ofWindow, type Lines } from "./commands";
 import { ContactView, pin } from "./contact";
 import { Crew, Hand, compiled } from "./crew";
-import { byId, make, onceAFrame, save } from "./dom";
-import { CHART_SIZE, courseTable, drawing, mapTable, png, svg, table } from "./files";
+import { byId, make, onceAFrame } from "./dom";
+import { showLegend } from "./legend";
 import { decoded, encoded } from "./link";
-import { short, typed } from "./number";
-import { Plane, type AxisName, type Mark, type PlaneModel } from "./plane";
+import { AXES, LINE, ofSpheres, ofText, quantitiesOf, units, type Places } from "./models";
+import { rounded, typed } from "./number";
+import { write } from "./out";
+import { Plane } from "./plane";
 import { PRESETS, presetOf } from "./presets";
-import { OF_SPHERES, ofSystem as quantitiesOfSystem, type Shown } from "./quantities";
-import { ticks, part } from "./scale";
-import { scene, Store, type Axes, type Quantity, type State } from "./state";
-import { nameOf, SystemView, textOf } from "./system";
+import { OF_SPHERES } from "./quantities";
+import { Store, type Axes, type Quantity, type State } from "./state";
+import { nameOf, SystemView } from "./system";
 import { whenSchemeChanges } from "./theme";
 import { tour } from "./tour";
 import type { Answer, Axis, Law } from "./types";
 
-const AXES: Record<Axes, [AxisName, AxisName]> = {
-  "kappa-psi": [{ symbol: "κ", name: "stiffness", unit: "" }, { symbol: "ψ", name: "impact ratio", unit: "" }],
-  "kappa-ratio": [{ symbol: "κ", name: "stiffness", unit: "" }, { symbol: "gₜ/gₙ", name: "impact ratio", unit: "" }],
-  "axis-ratio": [{ symbol: "ακ", name: "stiffness", unit: "" }, { symbol: "gₜ/gₙ", name: "impact ratio", unit: "" }],
-  velocities: [{ symbol: "gₙ", name: "normal velocity", unit: "m/s" }, { symbol: "gₜ", name: "tangential velocity", unit: "m/s" }],
-};
 /** The window and the point of axes that were just chosen. */
 const WINDOWS: Record<Axes, Partial<State>> = {
   "kappa-psi": presetOf("plane").state,
-  "kappa-ratio": { x: { low: 1, high: 100, log: true }, y: { low: 0.02, high: 3.1, log: false }, point: [63, 0.7] },
-  "axis-ratio": { x: { low: 0, high: 20, log: false }, y: { low: 0, high: 4, log: false }, point: [18, 1.55] },
-  velocities: { x: { low: 0.1, high: 40, log: true }, y: { low: 0.01, high: 60, log: true }, point: [10, 5] },
+  "kappa-ratio": {
+    x: { low: 1, high: 100, log: true },
+    y: { low: 0.02, high: 3.1, log: false },
+    point: [63, 0.7],
+  },
+  "axis-ratio": {
+    x: { low: 0, high: 20, log: false },
+    y: { low: 0, high: 4, log: false },
+    point: [18, 1.55],
+  },
+  velocities: {
+    x: { low: 0.1, high: 40, log: true },
+    y: { low: 0.01, high: 60, log: true },
+    point: [10, 5],
+  },
 };
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
@@ -37,10 +43,7 @@ class Page {
   readonly store: Store;
   private preset: string;
   private laws: Law[] = [];
-  private letters: { name: string; ratio: number }[] = [];
-  private top: [number, number][] = [];
-  private small: { n: number; kappa: number }[] = [];
-  private systemQuantities: Shown[] = quantitiesOfSystem([]);
+  private readonly places: Places = { letters: [], top: [], small: [] };
   private readonly plane: Plane;
   private readonly contact: ContactView;
   private readonly system: SystemView;
@@ -55,7 +58,11 @@ class Page {
     const cores = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     this.hand = new Hand(module);
     this.crew = new Crew(module, cores);
-    this.contact = new ContactView(this.hand, () => this.laws, () => this.showLines());
+    this.contact = new ContactView(
+      this.hand,
+      () => this.laws,
+      () => this.showLines(),
+    );
     this.contact.source = () => this.store.state;
     this.system = new SystemView(new Hand(module), this.store, () => {
       this.show();
@@ -63,7 +70,8 @@ class Page {
     });
     this.plane = new Plane(byId<HTMLCanvasElement>("plane"), this.crew, new Hand(module), {
       point: (point) => this.movePoint(point),
-      window: (x, y) => this.store.change(this.store.state.tab === "spheres" ? { x, y } : { sx: x, sy: y }),
+      window: (x, y) =>
+        this.store.change(this.store.state.tab === "spheres" ? { x, y } : { sx: x, sy: y }),
       told: (words) => (byId("told").textContent = words || HINT),
       status: (words) => {
         byId("status").textContent = words;
@@ -83,30 +91,45 @@ class Page {
 
   /** Asks for what does not change: laws, and places with closed forms. */
   private async learn(): Promise<void> {
-    const ask = async (request: object) => (await this.hand.do<Answer>({ task: "ask", request })).answer;
+    const ask = async (request: object) =>
+      (await this.hand.do<Answer>({ task: "ask", request })).answer;
     const [laws, about] = [await ask({ do: "laws" }), await ask({ do: "about" })];
     this.laws = laws as unknown as Law[];
     byId("version").textContent = `stickslip ${about.version}`;
     const choice = byId<HTMLSelectElement>("law");
     const codes = [...new Set(this.laws.map((law) => law.code))];
-    choice.replaceChildren(...codes.map((code) => make("optgroup", { label: code }, ...this.laws.filter((law) => law.code === code).map((law) => make("option", { value: law.name }, law.name)))));
+    choice.replaceChildren(
+      ...codes.map((code) =>
+        make(
+          "optgroup",
+          { label: code },
+          ...this.laws
+            .filter((law) => law.code === code)
+            .map((law) => make("option", { value: law.name }, law.name)),
+        ),
+      ),
+    );
     this.showNow();
     this.contact.redraw();
-    const line = await ask({ do: "line", kappa: 63, highest: 20 / 7 });
+    const line = await ask({ do: "line", kappa: LINE.kappa, highest: LINE.highest / LINE.ratio });
     if (!line.error) {
       const intervals = line as unknown as { low: number; high: number }[];
-      this.letters = intervals.map(({ low, high }, index) => ({ name: LETTERS[index] ?? "", ratio: ((low + high) / 2) * 1.4 }));
+      this.places.letters = intervals.map(({ low, high }, index) => ({
+        name: LETTERS[index] ?? "",
+        ratio: ((low + high) / 2) * LINE.ratio,
+      }));
     }
     const limits = await ask({ do: "limits", kappa: [0.01, 10_000] });
-    this.top = limits.top as [number, number][];
-    this.small = (limits.small as number[]).map((kappa, index) => ({ n: index + 1, kappa }));
+    this.places.top = limits.top as [number, number][];
+    this.places.small = (limits.small as number[]).map((kappa, index) => ({ n: index + 1, kappa }));
     this.show();
   }
 
   private movePoint(point: [number, number]): void {
     const { state } = this.store;
     if (state.tab === "spheres") this.store.change({ point });
-    else this.store.change({ set: { ...state.set, [state.across]: point[0], [state.up]: point[1] } });
+    else
+      this.store.change({ set: { ...state.set, [state.across]: point[0], [state.up]: point[1] } });
   }
 
   /** Another state altogether, such as a preset's. */
@@ -119,7 +142,8 @@ class Page {
     const { state } = this.store;
     document.body.dataset.tab = state.tab;
     this.showControls(state);
-    const model = state.tab === "spheres" ? this.spheresModel(state) : this.systemModel(state);
+    const model =
+      state.tab === "spheres" ? ofSpheres(state, this.places) : ofText(state, this.system);
     byId("no-plane").hidden = model !== undefined;
     if (state.tab === "spheres") this.contact.show(state);
     else void this.system.show(state);
@@ -128,59 +152,9 @@ class Page {
     clearTimeout(this.hashTimer);
     this.hashTimer = setTimeout(() => {
       const hash = encoded(this.store.state, this.preset);
-      if (hash !== location.hash.slice(1)) history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
+      if (hash !== location.hash.slice(1))
+        history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
     }, 200);
-  }
-
-  private units(state: State): [number, number] {
-    const psi = state.alpha / state.mu;
-    return { "kappa-psi": [1, 1], "kappa-ratio": [1, psi], "axis-ratio": [1 / state.alpha, psi], velocities: [NaN, NaN] }[state.axes] as [number, number];
-  }
-
-  private spheresModel(state: State): PlaneModel {
-    const [ofX, ofY] = this.units(state);
-    const scaled = state.axes !== "velocities";
-    const { pinned } = state;
-    const mark = (kappa: number, psi: number): [number, number] => [kappa / ofX, psi / ofY];
-    const marks: Mark[] = state.points && scaled ? this.letters.map(({ name, ratio }) => ({ name, at: mark(63, ratio / 1.4) })) : [];
-    const limits = state.limits && scaled;
-    const few = this.small.filter(({ kappa }) => kappa / ofX >= state.x.low && kappa / ofX <= state.x.high);
-    return {
-      scene: scene(state, state.x, state.y),
-      names: AXES[state.axes],
-      shown: OF_SPHERES.find((it) => it.id === state.quantity) ?? (OF_SPHERES[0] as Shown),
-      point: state.point,
-      pinned: pinned && pinned.axes === state.axes ? pinned.point : undefined,
-      boundaries: state.boundaries,
-      fast: state.law === "paper" && scaled,
-      marks,
-      curve: limits ? this.top.map(([kappa, psi]) => mark(kappa, psi)) : [],
-      notches: limits ? few.map(({ n, kappa }) => ({ name: few.length < 14 ? `κ${[...String(n)].map((it) => "₀₁₂₃₄₅₆₇₈₉"[Number(it)]).join("")}` : "", at: mark(kappa, 1) })) : [],
-      least: 0,
-    };
-  }
-
-  private systemModel(state: State): PlaneModel | undefined {
-    const found = this.system.scene(state, textOf(state));
-    if (!found) return undefined;
-    const components = this.system.parsed?.components ?? [];
-    const fields = ["time at the end", ...components.slice(0, 3).map((it) => `${it.name} at the end`)];
-    if (JSON.stringify(this.systemQuantities.slice(2).map((it) => it.name)) !== JSON.stringify(fields)) {
-      this.systemQuantities = quantitiesOfSystem(fields);
-    }
-    return {
-      scene: found,
-      names: [state.across, state.up].map((name) => ({ symbol: name, name, unit: "" })) as [AxisName, AxisName],
-      shown: this.systemQuantities.find((it) => it.id === state.colour) ?? (this.systemQuantities[0] as Shown),
-      point: [this.system.value(state.across), this.system.value(state.up)],
-      pinned: undefined,
-      boundaries: state.boundaries,
-      fast: false,
-      marks: [],
-      curve: [],
-      notches: [],
-      least: -Infinity,
-    };
   }
 
   /** Puts the state into all controls. */
@@ -195,7 +169,7 @@ class Page {
     set("preset", this.preset);
     byId("caption").textContent = presetOf(this.preset).caption;
     set("axes", state.axes);
-    const quantities = spheres ? OF_SPHERES : this.systemQuantities;
+    const quantities = spheres ? OF_SPHERES : quantitiesOf(this.system);
     const choice = byId<HTMLSelectElement>("quantity");
     const names = quantities.map((it) => it.name).join();
     if (choice.dataset.names !== names) {
@@ -204,16 +178,23 @@ class Page {
     }
     set("quantity", spheres ? state.quantity : state.colour);
     const [x, y] = spheres ? [state.x, state.y] : [state.sx, state.sy];
-    for (const [id, value] of [["x-low", x.low], ["x-high", x.high], ["y-low", y.low], ["y-high", y.high]] as const) set(id, value);
+    for (const [id, value] of [
+      ["x-low", x.low],
+      ["x-high", x.high],
+      ["y-low", y.low],
+      ["y-high", y.high],
+    ] as const)
+      set(id, value);
     byId<HTMLInputElement>("x-log").checked = x.log;
     byId<HTMLInputElement>("y-log").checked = y.log;
-    const [one, other] = spheres ? AXES[state.axes].map((it) => it.symbol) : [state.across, state.up];
+    const [one, other] = this.axisNames(state);
     for (const label of document.querySelectorAll("[data-axis]")) {
-      label.textContent = (label as HTMLElement).dataset.axis === "x" ? (one ?? "") : (other ?? "");
+      label.textContent = (label as HTMLElement).dataset.axis === "x" ? one : other;
     }
     set("point-x", spheres ? state.point[0] : this.system.value(state.across));
     set("point-y", spheres ? state.point[1] : this.system.value(state.up));
-    for (const id of ["boundaries", "points", "limits"] as const) byId<HTMLInputElement>(id).checked = state[id];
+    for (const id of ["boundaries", "points", "limits"] as const)
+      byId<HTMLInputElement>(id).checked = state[id];
     set("law", state.law);
     for (const id of ["damping", "tangential", "mu"] as const) {
       set(id, state[id]);
@@ -222,61 +203,65 @@ class Page {
     set("alpha", state.alpha === 2 / 7 ? "2/7" : state.alpha);
     for (const [key, value] of Object.entries(state.bodies)) set(key, value);
     const law = this.laws.find((it) => it.name === state.law);
-    byId<HTMLInputElement>("tangential").disabled = byId<HTMLInputElement>("tangential-number").disabled = law?.name === "paper";
+    byId<HTMLInputElement>("tangential").disabled = byId<HTMLInputElement>(
+      "tangential-number",
+    ).disabled = law?.name === "paper";
     byId("equations").textContent = law ? `${law.equations}. The spring ${law.energy}.` : "";
     document.body.dataset.axes = state.axes;
     byId("pin").textContent = state.pinned ? "Unpin" : "Pin to compare";
     byId("letters").hidden = !(state.points && spheres);
-    if (state.points && byId("letters").childElementCount !== this.letters.length) {
-      byId("letters").replaceChildren(...this.letters.map(({ name, ratio }) => make("button", { type: "button", click: () => this.toLetter(ratio), "aria-label": `point ${name}` }, name)));
+    if (state.points && byId("letters").childElementCount !== this.places.letters.length) {
+      byId("letters").replaceChildren(
+        ...this.places.letters.map(({ name, ratio }) =>
+          make(
+            "button",
+            { type: "button", click: () => this.toLetter(ratio), "aria-label": `point ${name}` },
+            name,
+          ),
+        ),
+      );
     }
   }
 
   private toLetter(ratio: number): void {
-    const [ofX, ofY] = this.units(this.store.state);
-    this.store.change({ point: [Number((63 / ofX).toPrecision(6)), Number((ratio / 1.4 / ofY).toPrecision(6))] });
+    const [ofX, ofY] = units(this.store.state);
+    this.store.change({ point: [rounded(LINE.kappa / ofX), rounded(ratio / LINE.ratio / ofY)] });
   }
 
   private showLegend(): void {
-    const box = byId("legend");
-    const legend = this.plane.mapping.legend;
-    if (!legend) return;
-    const { shown, range, counts, by } = legend;
-    if (shown.kind === "value") {
-      const axis: Axis = { low: range[0], high: range[1], log: false };
-      const stops = Array.from({ length: 17 }, (_, index) => css(ramp(shown.ramp, index / 16))).join(",");
-      const marks = ticks(axis, 6).filter((it) => it.label).map(({ value, label }) => make("span", { style: `left:${100 * part(axis, value)}%` }, label));
-      box.replaceChildren(make("div", { class: "bar", style: `background:linear-gradient(to right,${stops})` }), make("div", { class: "marks" }, ...marks));
-      box.setAttribute("aria-label", `Colours: ${shown.name} from ${short(range[0], 3)} to ${short(range[1], 3)}`);
-    } else if (shown.kind === "count") {
-      const shownCounts = counts.slice(0, 40);
-      box.replaceChildren(make("div", { class: "chips" }, ...shownCounts.map((count) => {
-        const colour = ofCount(count, by);
-        return make("span", { style: `background:${css(colour)};color:${isBright(colour) ? "#111" : "#fff"}` }, String(count));
-      }), ...(counts.length > 40 ? ["…"] : [])));
-      box.setAttribute("aria-label", `Colours: ${shown.name}: ${counts.join(", ")}`);
-    } else {
-      const regions = [...(this.plane.atlas?.regions ?? [])].sort((one, other) => other.share - one.share);
-      const names = new Map(regions.map((it) => [it.code, it.itinerary]));
-      box.replaceChildren(make("div", { class: "chips" }, ...[...names].slice(0, 24).map(([code, name]) => {
-        const colour = ofCode(code);
-        return make("span", { style: `background:${css(colour)};color:${isBright(colour) ? "#111" : "#fff"}` }, name.replaceAll("-", "−"));
-      })));
-      box.setAttribute("aria-label", `Colours: ${shown.name}`);
-    }
+    const { mapping, atlas } = this.plane;
+    if (mapping.legend) showLegend(byId("legend"), mapping.legend, atlas);
   }
 
   private lines(): [string, Lines][] {
     const { state } = this.store;
-    if (state.tab === "system") return [["This system", ofSystem(state, nameOf(state), this.system.run?.course[0]?.[0] ?? 0)]];
+    if (state.tab === "system")
+      return [
+        ["This system", ofSystem(state, nameOf(state), this.system.run?.course[0]?.[0] ?? 0)],
+      ];
     const { contact } = this.contact;
-    const one: [string, Lines][] = contact ? [["This contact", ofContact(state, contact.document)]] : [];
+    const one: [string, Lines][] = contact
+      ? [["This contact", ofContact(state, contact.document)]]
+      : [];
     return [...one, ["This window", ofWindow(state)]];
   }
 
   private showLines(): void {
     const block = (name: string, words: string) =>
-      make("div", { class: "code" }, make("button", { type: "button", click: () => void this.copy(words, name), "aria-label": `Copy: ${name}` }, "Copy"), make("pre", { tabindex: 0, "aria-label": name }, words));
+      make(
+        "div",
+        { class: "code" },
+        make(
+          "button",
+          {
+            type: "button",
+            click: () => void this.copy(words, name),
+            "aria-label": `Copy: ${name}`,
+          },
+          "Copy",
+        ),
+        make("pre", { tabindex: 0, "aria-label": name }, words),
+      );
     const nodes = this.lines().flatMap(([title, { shell, python }]) => [
       make("h3", {}, title),
       ...(shell ? [block(`${title}, command line`, shell)] : []),
@@ -284,7 +269,9 @@ class Page {
     ]);
     byId("lines").replaceChildren(...nodes);
     const { document: found } = this.contact.contact ?? {};
-    if (found && this.store.state.tab === "spheres") byId("spoken").textContent = `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
+    if (found && this.store.state.tab === "spheres")
+      byId("spoken").textContent =
+        `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
   }
 
   private async copy(words: string, what: string): Promise<void> {
@@ -292,7 +279,11 @@ class Page {
       await navigator.clipboard.writeText(words);
       this.say(`${what}: copied`);
     } catch {
-      const area = make("textarea", { readonly: true, class: "copying", "aria-label": what }, words);
+      const area = make(
+        "textarea",
+        { readonly: true, class: "copying", "aria-label": what },
+        words,
+      );
       byId("lines").prepend(area);
       area.select();
       this.say("the browser does not copy; the text is selected");
@@ -310,36 +301,28 @@ class Page {
     return `${location.href.split("#")[0]}#${encoded(this.store.state, this.preset)}`;
   }
 
-  /** Writes a file by its name. */
-  async write(what: string): Promise<void> {
-    const { state } = this.store;
+  /** Writes a file by the name of its button. */
+  private write(what: string): Promise<void> {
+    const {
+      store: { state },
+      plane,
+      contact,
+      system,
+    } = this;
     const spheres = state.tab === "spheres";
-    const chart = spheres ? this.contact.chart : this.system.chart;
-    const name = spheres ? "contact" : nameOf(state);
-    const drawPlane = (pen: Parameters<Plane["drawWith"]>[0], width: number, height: number) => this.plane.drawWith(pen, width, height, false);
-    const axes = (spheres ? AXES[state.axes].map((it) => it.symbol) : [state.across, state.up]) as [string, string];
-    const fields = spheres ? ["eps_t", "contact_time", "energy_lost", "eps_n"] : this.systemQuantities.slice(2).map((it) => it.name);
-    const components = this.system.parsed?.components.map((it) => it.name) ?? [];
-    const { run } = this.system;
-    switch (what) {
-      case "course-svg": return chart && save(`${name}.svg`, svg(...CHART_SIZE, drawing(chart)), "image/svg+xml");
-      case "course-png": return chart && save(`${name}.png`, await png(...CHART_SIZE, drawing(chart)));
-      case "course-csv":
-        if (spheres) return this.contact.course && save("contact.csv", courseTable(this.contact.course), "text/csv");
-        return run && save(`${name}.csv`, table(["time", ...components], run.course), "text/csv");
-      case "events-csv":
-        if (spheres) return this.contact.contact && save("switches.csv", switchRows(this.contact.contact.document), "text/csv");
-        return run && save(`${name}-events.csv`, table(["time", "event", "mode_before", "mode_after", ...components.map((it) => `${it}_before`), ...components.map((it) => `${it}_after`)], run.events.map((it) => [it.time, it.event, it.from, it.to, ...it.before, ...it.after])), "text/csv");
-      case "course-json": {
-        const found = spheres ? this.contact.contact?.document : run;
-        return found && save(`${name}.json`, JSON.stringify(found, null, 2), "application/json");
-      }
-      case "plane-svg": return save("plane.svg", svg(...this.plane.extent, drawPlane), "image/svg+xml");
-      case "plane-png": return save("plane.png", await png(...this.plane.extent, drawPlane));
-      case "plane-csv": return save("map.csv", mapTable(this.plane, axes, fields), "text/csv");
-      case "plane-json": return save("atlas.json", JSON.stringify({ axes, ...this.plane.atlas }, null, 1), "application/json");
-      case "text": return save(`${nameOf(state)}.slip`, textOf(state));
-    }
+    const axes = this.axisNames(state);
+    const fields = spheres
+      ? ["eps_t", "contact_time", "energy_lost", "eps_n"]
+      : quantitiesOf(system)
+          .slice(2)
+          .map((it) => it.name);
+    return write(what, { state, plane, contact, system, axes, fields });
+  }
+
+  private axisNames(state: State): [string, string] {
+    if (state.tab === "system") return [state.across, state.up];
+    const [one, other] = AXES[state.axes];
+    return [one.symbol, other.symbol];
   }
 
   private wire(): void {
@@ -349,13 +332,20 @@ class Page {
     const choice = byId<HTMLSelectElement>("preset");
     choice.append(...PRESETS.map(({ id, name }) => make("option", { value: id }, name)));
     on("preset", "change", ({ value }) => this.go(presetOf(value).state, value));
-    for (const tab of ["spheres", "system"] as const) byId(`tab-${tab}`).onclick = () => store.change({ tab });
+    for (const tab of ["spheres", "system"] as const)
+      byId(`tab-${tab}`).onclick = () => store.change({ tab });
     on("axes", "change", ({ value }) => {
       const axes = value as Axes;
       const { x, y, point } = WINDOWS[axes];
       store.change({ axes, pinned: null, ...(x && y && point ? { x, y, point } : {}) });
     });
-    on("quantity", "change", ({ value }) => store.change(store.state.tab === "spheres" ? { quantity: value as Quantity } : { colour: value as Quantity }));
+    on("quantity", "change", ({ value }) =>
+      store.change(
+        store.state.tab === "spheres"
+          ? { quantity: value as Quantity }
+          : { colour: value as Quantity },
+      ),
+    );
     const axisOf = (key: "x" | "y"): [keyof State, Axis] => {
       const { tab } = store.state;
       const name = tab === "spheres" ? key : (`s${key}` as "sx" | "sy");
@@ -367,19 +357,32 @@ class Page {
           const [name, axis] = axisOf(key);
           const value = typed(input.value);
           const next = { ...axis, [end]: value };
-          if (value !== undefined && next.low < next.high && (next.low > 0 || !axis.log) && (next.low >= 0 || store.state.tab === "system")) store.change({ [name]: next });
+          if (
+            value !== undefined &&
+            next.low < next.high &&
+            (next.low > 0 || !axis.log) &&
+            (next.low >= 0 || store.state.tab === "system")
+          )
+            store.change({ [name]: next });
           input.value = String(axisOf(key)[1][end]);
         });
       }
       on(`${key}-log`, "change", ({ checked }) => {
         const [name, axis] = axisOf(key);
         if (checked && axis.high <= 0) return this.showNow();
-        store.change({ [name]: { ...axis, log: checked, low: checked && axis.low <= 0 ? axis.high / 1000 : axis.low } });
+        store.change({
+          [name]: {
+            ...axis,
+            log: checked,
+            low: checked && axis.low <= 0 ? axis.high / 1000 : axis.low,
+          },
+        });
       });
     }
     on("point-x", "change", (input) => this.typePoint(0, input));
     on("point-y", "change", (input) => this.typePoint(1, input));
-    for (const id of ["boundaries", "points", "limits"] as const) on(id, "change", ({ checked }) => store.change({ [id]: checked }));
+    for (const id of ["boundaries", "points", "limits"] as const)
+      on(id, "change", ({ checked }) => store.change({ [id]: checked }));
     on("law", "change", ({ value }) => {
       const law = this.laws.find((it) => it.name === value);
       const patch: Partial<State> = { law: value };
@@ -391,7 +394,8 @@ class Page {
       on(id, "input", ({ value }) => store.change({ [id]: Number(value) }));
       on(`${id}-number`, "change", (input) => {
         const value = typed(input.value);
-        if (value !== undefined && (value > 0 || (value === 0 && id !== "mu"))) store.change({ [id]: value });
+        if (value !== undefined && (value > 0 || (value === 0 && id !== "mu")))
+          store.change({ [id]: value });
         input.value = String(store.state[id]);
       });
     }
@@ -406,7 +410,8 @@ class Page {
         if (value !== undefined) store.change({ bodies: { ...store.state.bodies, [key]: value } });
       });
     }
-    byId("pin").onclick = () => store.change({ pinned: store.state.pinned ? null : pin(store.state) });
+    byId("pin").onclick = () =>
+      store.change({ pinned: store.state.pinned ? null : pin(store.state) });
     byId("home").onclick = () => {
       const { x, y, axes } = presetOf(this.preset).state;
       store.change(store.state.tab === "spheres" ? { x, y, axes } : this.system.home());
@@ -432,7 +437,10 @@ class Page {
   private typePoint(place: 0 | 1, input: HTMLInputElement): void {
     const { state } = this.store;
     const value = typed(input.value);
-    const now: [number, number] = state.tab === "spheres" ? [...state.point] : [this.system.value(state.across), this.system.value(state.up)];
+    const now: [number, number] =
+      state.tab === "spheres"
+        ? [...state.point]
+        : [this.system.value(state.across), this.system.value(state.up)];
     if (value !== undefined && (value > 0 || state.tab === "system")) {
       now[place] = value;
       this.movePoint(now);
@@ -442,7 +450,10 @@ class Page {
 
   private key(event: KeyboardEvent): void {
     const { target } = event;
-    const typing = target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement;
+    const typing =
+      target instanceof HTMLInputElement ||
+      target instanceof HTMLTextAreaElement ||
+      target instanceof HTMLSelectElement;
     if (typing) return;
     const key = event.key.toLowerCase();
     if ((event.ctrlKey || event.metaKey) && key === "z") {
@@ -468,15 +479,18 @@ class Page {
 
   /** What tests read. */
   get inside() {
-    return { store: this.store, plane: this.plane, contact: this.contact, system: this.system, crew: this.crew, hand: this.hand };
+    return {
+      store: this.store,
+      plane: this.plane,
+      contact: this.contact,
+      system: this.system,
+      crew: this.crew,
+      hand: this.hand,
+    };
   }
 }
 
 const HINT = "Drag the point; wheel or pinch to zoom; Shift and drag to move the window.";
-
-function switchRows({ switches }: { switches: { time: number; time_left: number; to: string; side: number; spring: number; velocity: number }[] }): string {
-  return table(["time", "time_left", "to", "side", "spring", "velocity"], switches.map((it) => [it.time, it.time_left, it.to, it.side, it.spring, it.velocity]));
-}
 
 async function start(): Promise<void> {
   try {
@@ -485,7 +499,8 @@ async function start(): Promise<void> {
     (globalThis as Record<string, unknown>).explorer = page.inside;
     document.body.classList.add("ready");
   } catch (error) {
-    byId("told").textContent = `This browser cannot run the page: ${error instanceof Error ? error.message : String(error)}`;
+    byId("told").textContent =
+      `This browser cannot run the page: ${error instanceof Error ? error.message : String(error)}`;
   }
 }
 

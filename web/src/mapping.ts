@@ -17,7 +17,8 @@ export class Mapping {
   private map: MapPart = empty(0);
   private size: [number, number] = [0, 0];
   /** What is computed now, and shown once all of its coarse points are there. */
-  private next: { map: MapPart; size: [number, number]; window: [Axis, Axis]; coarse: number } | undefined;
+  private next:
+    { map: MapPart; size: [number, number]; window: [Axis, Axis]; coarse: number } | undefined;
   legend: Legend | undefined;
   private wanted: Shown | undefined;
   private edges = false;
@@ -26,13 +27,21 @@ export class Mapping {
   took = 0;
   ready = false;
 
-  constructor(private readonly crew: Crew, private readonly redraw: () => void) {}
+  constructor(
+    private readonly crew: Crew,
+    private readonly redraw: () => void,
+  ) {}
 
   /** Computes another map. `blocks` are the sizes of its points, from coarse to 1. */
   compute(scene: SceneRequest, width: number, height: number, blocks: number[]): void {
     const bands = blocks.flatMap((block) => bandsOf(scene, width, height, block));
     const coarse = bands.filter((band) => band.block === blocks[0]).length;
-    this.next = { map: empty(width * height), size: [width, height], window: [scene.x, scene.y], coarse };
+    this.next = {
+      map: empty(width * height),
+      size: [width, height],
+      window: [scene.x, scene.y],
+      coarse,
+    };
     this.begun = performance.now();
     this.ready = false;
     this.crew.compute(
@@ -101,7 +110,12 @@ export class Mapping {
     const { codes } = this.map;
     for (let index = 0; index < pixels.length; index++) {
       const point = first * width + index;
-      if (this.edges && point % width > 0 && point >= width && (codes[point] !== codes[point - 1] || codes[point] !== codes[point - width])) {
+      if (
+        this.edges &&
+        point % width > 0 &&
+        point >= width &&
+        (codes[point] !== codes[point - 1] || codes[point] !== codes[point - width])
+      ) {
         pixels[index] = EDGE;
         continue;
       }

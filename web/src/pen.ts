@@ -94,7 +94,9 @@ export class CanvasPen implements Pen {
 
   private trace(path: Path): void {
     this.context.beginPath();
-    path.forEach(([x, y], index) => (index ? this.context.lineTo(x, y) : this.context.moveTo(x, y)));
+    path.forEach(([x, y], index) =>
+      index ? this.context.lineTo(x, y) : this.context.moveTo(x, y),
+    );
   }
 
   private stroke({ colour, width = 1, dash = [] }: Stroke): void {
@@ -111,7 +113,11 @@ export class SvgPen implements Pen {
   private readonly parts: string[] = [];
   private clips = 0;
 
-  constructor(private readonly width: number, private readonly height: number, background: string) {
+  constructor(
+    private readonly width: number,
+    private readonly height: number,
+    background: string,
+  ) {
     this.rectangle(0, 0, width, height, background);
   }
 
@@ -122,11 +128,13 @@ export class SvgPen implements Pen {
   }
 
   line(path: Path, stroke: Stroke): void {
-    if (path.length > 1) this.parts.push(`<path d="${course(path)}" fill="none"${strokes(stroke)}/>`);
+    if (path.length > 1)
+      this.parts.push(`<path d="${course(path)}" fill="none"${strokes(stroke)}/>`);
   }
 
   area(path: Path, fill: string, stroke?: Stroke): void {
-    if (path.length > 1) this.parts.push(`<path d="${course(path)}Z" fill="${fill}"${strokes(stroke)}/>`);
+    if (path.length > 1)
+      this.parts.push(`<path d="${course(path)}Z" fill="${fill}"${strokes(stroke)}/>`);
   }
 
   disc(x: number, y: number, radius: number, fill: string, stroke?: Stroke): void {

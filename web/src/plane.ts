@@ -58,8 +58,13 @@ const TOP = 12;
 const BOTTOM = 46;
 
 const DASHES: Record<string, number[]> = {
-  "stick-graze": [6, 4], graze: [6, 4], "slip-graze": [2, 3], order: [2, 3],
-  "start-of-contact": [8, 3, 2, 3], "start-of-tail": [2, 5], branch: [8, 3, 2, 3],
+  "stick-graze": [6, 4],
+  graze: [6, 4],
+  "slip-graze": [2, 3],
+  order: [2, 3],
+  "start-of-contact": [8, 3, 2, 3],
+  "start-of-tail": [2, 5],
+  branch: [8, 3, 2, 3],
 };
 
 export class Plane {
@@ -75,7 +80,12 @@ export class Plane {
   private readonly canvas: HTMLCanvasElement;
   private computed = "";
 
-  constructor(canvas: HTMLCanvasElement, crew: Crew, private readonly tracer: Hand, private readonly events: PlaneEvents) {
+  constructor(
+    canvas: HTMLCanvasElement,
+    crew: Crew,
+    private readonly tracer: Hand,
+    private readonly events: PlaneEvents,
+  ) {
     this.canvas = canvas;
     this.mapping = new Mapping(crew, () => {
       this.draw();
@@ -140,7 +150,10 @@ export class Plane {
   }
 
   private async trace(key: string, scene: SceneRequest): Promise<void> {
-    const { answer, ms } = await this.tracer.do<Answer & Atlas>({ task: "ask", scene, request: { do: "atlas" } }, 300_000);
+    const { answer, ms } = await this.tracer.do<Answer & Atlas>(
+      { task: "ask", scene, request: { do: "atlas" } },
+      300_000,
+    );
     if (key !== this.atlasKey) return;
     if (answer.error) {
       this.atlas = undefined;
@@ -160,7 +173,9 @@ export class Plane {
   private report(): void {
     const { model, mapping } = this;
     const [width, height] = mapping.data.size;
-    const map = mapping.ready ? `map ${width} × ${height} in ${Math.round(mapping.took)} ms` : "computing the map …";
+    const map = mapping.ready
+      ? `map ${width} × ${height} in ${Math.round(mapping.took)} ms`
+      : "computing the map …";
     this.events.status(model?.boundaries ? `${map}; ${this.atlasNote}` : map);
   }
 
@@ -195,9 +210,16 @@ export class Plane {
     const about = [(x - LEFT) / width, 1 - (y - TOP) / height] as const;
     const by = [dx / width, -dy / height] as const;
     // Over an axis, the window is zoomed along this axis alone.
-    const along = [x < LEFT && zoom !== 1 ? 1 : zoom, y > TOP + height && zoom !== 1 ? 1 : zoom] as const;
+    const along = [
+      x < LEFT && zoom !== 1 ? 1 : zoom,
+      y > TOP + height && zoom !== 1 ? 1 : zoom,
+    ] as const;
     const moved = [model.scene.x, model.scene.y].map((axis, index) => {
-      const [at, shift, factor] = [about[index as 0 | 1], by[index as 0 | 1], along[index as 0 | 1]];
+      const [at, shift, factor] = [
+        about[index as 0 | 1],
+        by[index as 0 | 1],
+        along[index as 0 | 1],
+      ];
       const from = at - at / factor - shift / factor;
       return this.allowed(stretched(axis, from, from + 1 / factor), axis);
     }) as [Axis, Axis];
@@ -206,8 +228,12 @@ export class Plane {
 
   /** A window within what is possible, with ends that are no longer than they have to be. */
   private allowed(axis: Axis, before: Axis): Axis {
-    const least = axis.log ? Math.max(1e-6, this.model?.least ?? 1e-6) : (this.model?.least ?? -Infinity);
-    const span = axis.log ? Math.log(axis.high / axis.low) : (axis.high - axis.low) / Math.max(1e-300, Math.abs(axis.high));
+    const least = axis.log
+      ? Math.max(1e-6, this.model?.least ?? 1e-6)
+      : (this.model?.least ?? -Infinity);
+    const span = axis.log
+      ? Math.log(axis.high / axis.low)
+      : (axis.high - axis.low) / Math.max(1e-300, Math.abs(axis.high));
     if (!(span > 2e-6) || !(axis.high < 1e9) || !Number.isFinite(axis.low)) return before;
     if (axis.log && span > 25) return before;
     const digits = Math.max(4, Math.min(12, 4 - Math.floor(Math.log10(Math.min(1, span)))));
@@ -236,17 +262,22 @@ export class Plane {
     const context = this.canvas.getContext("2d");
     // Paths are scaled with the canvas, and the place is not.
     const ratio = window.devicePixelRatio || 1;
-    const index = paths.findIndex((path) => context?.isPointInPath(path, x * ratio, y * ratio, "evenodd"));
+    const index = paths.findIndex((path) =>
+      context?.isPointInPath(path, x * ratio, y * ratio, "evenodd"),
+    );
     return atlas.regions[index];
   }
 
   private regionPaths(atlas: Atlas): Path2D[] {
     const key = `${this.computed}${this.atlasKey}`;
-    if (this.paths.key === key && this.paths.regions.length === atlas.regions.length) return this.paths.regions;
+    if (this.paths.key === key && this.paths.regions.length === atlas.regions.length)
+      return this.paths.regions;
     const regions = atlas.regions.map((region) => {
       const path = new Path2D();
       for (const ring of region.rings) {
-        this.ring(atlas, ring).forEach(([x, y], index) => (index ? path.lineTo(x, y) : path.moveTo(x, y)));
+        this.ring(atlas, ring).forEach(([x, y], index) =>
+          index ? path.lineTo(x, y) : path.moveTo(x, y),
+        );
         path.closePath();
       }
       return path;
@@ -257,7 +288,8 @@ export class Plane {
 
   private ring(atlas: Atlas, ring: Region["rings"][number]): Path {
     return ring.flatMap((stretch) => {
-      const points = "line" in stretch ? stretch.line : (atlas.boundaries[stretch.curve]?.points ?? []);
+      const points =
+        "line" in stretch ? stretch.line : (atlas.boundaries[stretch.curve]?.points ?? []);
       const ordered = "back" in stretch && stretch.back ? [...points].reverse() : points;
       return ordered.map((point) => this.toPixels(point));
     });
@@ -274,9 +306,13 @@ export class Plane {
     const [width, height] = this.size;
     const index = mapping.at((x - LEFT) / width, (y - TOP) / height);
     const { map } = mapping.data;
-    const own = index !== undefined && mapping.legend ? words(mapping.legend, map, index) : undefined;
-    const told = own !== undefined && model.shown.kind !== "code" ? `${model.shown.name} ${own}` : undefined;
-    const itinerary = region ? region.itinerary + (region.doubtful ? " (in doubt)" : "") : undefined;
+    const own =
+      index !== undefined && mapping.legend ? words(mapping.legend, map, index) : undefined;
+    const told =
+      own !== undefined && model.shown.kind !== "code" ? `${model.shown.name} ${own}` : undefined;
+    const itinerary = region
+      ? region.itinerary + (region.doubtful ? " (in doubt)" : "")
+      : undefined;
     return [place, itinerary, told].filter((it) => it !== undefined).join(" · ");
   }
 
@@ -298,7 +334,13 @@ export class Plane {
       const place = mapping.place(model.scene.x, model.scene.y);
       if (place) {
         const [left, top, wide, high] = place;
-        pen.picture(mapping.canvas, LEFT + left * across, TOP + top * down, wide * across, high * down);
+        pen.picture(
+          mapping.canvas,
+          LEFT + left * across,
+          TOP + top * down,
+          wide * across,
+          high * down,
+        );
       }
       if (model.boundaries && atlas) this.drawBoundaries(pen, atlas);
       if (interactive && this.hovered && atlas) this.drawRegion(pen, atlas, this.hovered);
@@ -316,7 +358,11 @@ export class Plane {
     const many = atlas.boundaries.length > 150;
     for (const { kind, points } of atlas.boundaries) {
       const path = points.map((point) => this.toPixels(point));
-      pen.line(path, { colour: "#101010", width: many ? 0.7 : 1.15, dash: many ? [] : (DASHES[kind] ?? []) });
+      pen.line(path, {
+        colour: "#101010",
+        width: many ? 0.7 : 1.15,
+        dash: many ? [] : (DASHES[kind] ?? []),
+      });
     }
     if (many) return;
     for (const { point } of atlas.vertices) {
@@ -357,12 +403,24 @@ export class Plane {
     const { ink, faint } = theme();
     const [horizontal, vertical] = model.names;
     const bottom = TOP + down;
-    const frame: Path = [[LEFT, TOP], [LEFT + across, TOP], [LEFT + across, bottom], [LEFT, bottom], [LEFT, TOP]];
+    const frame: Path = [
+      [LEFT, TOP],
+      [LEFT + across, TOP],
+      [LEFT + across, bottom],
+      [LEFT, bottom],
+      [LEFT, TOP],
+    ];
     pen.line(frame, { colour: faint, width: 1 });
     let free = -Infinity;
     for (const { value, label } of ticks(model.scene.x, across / 75)) {
       const x = LEFT + part(model.scene.x, value) * across;
-      pen.line([[x, bottom], [x, bottom + (label ? 6 : 3)]], { colour: ink });
+      pen.line(
+        [
+          [x, bottom],
+          [x, bottom + (label ? 6 : 3)],
+        ],
+        { colour: ink },
+      );
       const half = label.length * 3.6;
       if (!label || x - half < free || x + half > LEFT + across + RIGHT) continue;
       free = x + half + 6;
@@ -370,19 +428,43 @@ export class Plane {
     }
     for (const { value, label } of ticks(model.scene.y, down / 55)) {
       const y = TOP + (1 - part(model.scene.y, value)) * down;
-      pen.line([[LEFT, y], [LEFT - (label ? 6 : 3), y]], { colour: ink });
+      pen.line(
+        [
+          [LEFT, y],
+          [LEFT - (label ? 6 : 3), y],
+        ],
+        { colour: ink },
+      );
       if (label) pen.text(label, LEFT - 9, y + 4, { colour: ink, align: "right" });
     }
     for (const { at, name } of model.notches) {
       const x = LEFT + part(model.scene.x, at[0]) * across;
       if (x < LEFT || x > LEFT + across) continue;
-      pen.area([[x, bottom - 1], [x - 4, bottom - 8], [x + 4, bottom - 8]], "#111", { colour: "#fff", width: 1 });
-      if (name) pen.text(name, x, bottom - 11, { colour: "#111", size: 11, align: "center", halo: "#fff" });
+      pen.area(
+        [
+          [x, bottom - 1],
+          [x - 4, bottom - 8],
+          [x + 4, bottom - 8],
+        ],
+        "#111",
+        { colour: "#fff", width: 1 },
+      );
+      if (name)
+        pen.text(name, x, bottom - 11, { colour: "#111", size: 11, align: "center", halo: "#fff" });
     }
     const caption = ({ symbol, name, unit }: AxisName) =>
       [name === symbol ? "" : name, symbol, unit ? `in ${unit}` : ""].filter(Boolean).join(" ");
-    pen.text(caption(horizontal), LEFT + across / 2, bottom + 38, { colour: ink, align: "center", size: 13 });
-    pen.text(caption(vertical), 14, TOP + down / 2, { colour: ink, align: "center", size: 13, up: true });
+    pen.text(caption(horizontal), LEFT + across / 2, bottom + 38, {
+      colour: ink,
+      align: "center",
+      size: 13,
+    });
+    pen.text(caption(vertical), 14, TOP + down / 2, {
+      colour: ink,
+      align: "center",
+      size: 13,
+      up: true,
+    });
   }
 
   /** The size of the canvas, for files. */

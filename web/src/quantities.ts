@@ -22,7 +22,15 @@ export interface Shown {
 const plain = { ramp: "sequential" as const, by: 1 };
 
 export const OF_SPHERES: Shown[] = [
-  { id: "eps_t", name: "tangential restitution εₜ", kind: "value", place: 0, ramp: "diverging", range: [-1, 1], by: 1 },
+  {
+    id: "eps_t",
+    name: "tangential restitution εₜ",
+    kind: "value",
+    place: 0,
+    ramp: "diverging",
+    range: [-1, 1],
+    by: 1,
+  },
   { id: "count", name: "number of switches", kind: "count", place: 0, ramp: "sequential", by: 1 },
   { id: "time", name: "contact time", kind: "value", place: 1, ...plain },
   { id: "lost", name: "part of the energy lost", kind: "value", place: 2, ...plain },
@@ -60,7 +68,8 @@ export function legend(shown: Shown, map: MapPart): Legend {
     const even = counts.every((count) => count % 2 === (counts[0] ?? 0) % 2);
     return { shown, range: [0, 1], counts, by: even && counts.length > 1 ? 2 : 1 };
   }
-  if (shown.range || shown.kind === "code") return { shown, range: shown.range ?? [0, 1], counts: [], by: 1 };
+  if (shown.range || shown.kind === "code")
+    return { shown, range: shown.range ?? [0, 1], counts: [], by: 1 };
   let [low, high] = [Infinity, -Infinity];
   for (let index = shown.place; index < map.values.length; index += STRIDE) {
     const value = map.values[index] as number;
@@ -78,7 +87,9 @@ export function colour({ shown, range, by }: Legend, map: MapPart, point: number
   if (shown.kind === "count") return ofCount(count, by);
   if (shown.kind === "code") return ofCode(map.codes[point] as number);
   const value = map.values[point * STRIDE + shown.place] as number;
-  return Number.isNaN(value) ? NOTHING : ramp(shown.ramp, (value - range[0]) / (range[1] - range[0]));
+  return Number.isNaN(value)
+    ? NOTHING
+    : ramp(shown.ramp, (value - range[0]) / (range[1] - range[0]));
 }
 
 /** The value of a point of a map in words. */

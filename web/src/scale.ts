@@ -48,7 +48,10 @@ function even({ low, high }: Scale, count: number): Tick[] {
   const found: Tick[] = [];
   for (let index = Math.ceil(low / by - 1e-9); index * by <= high + by * 1e-9; index++) {
     const places = Math.max(3, Math.ceil(Math.log10(Math.abs(index) + 1)) + 1);
-    found.push({ value: index * by, label: short(Number((index * by).toPrecision(12)), Math.max(places, digits(low, high, by))) });
+    found.push({
+      value: index * by,
+      label: short(Number((index * by).toPrecision(12)), Math.max(places, digits(low, high, by))),
+    });
   }
   return found;
 }

@@ -35,7 +35,10 @@ export class Spheres {
   speed = 0.5;
   playing = false;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly moved: (time: number | undefined) => void) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly moved: (time: number | undefined) => void,
+  ) {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
@@ -68,11 +71,22 @@ export class Spheres {
     const { time, compression, sliding, normal_force, tangential_force } = course;
     const last = time.length - 1;
     const end = time[last]!;
-    if (at < 0) return { gap: -at, shift: at * this.speeds(contact.document.parameters.psi)[0], turn: 0, ...rest };
+    if (at < 0)
+      return {
+        gap: -at,
+        shift: at * this.speeds(contact.document.parameters.psi)[0],
+        turn: 0,
+        ...rest,
+      };
     if (at > end) {
       const [shift, turn] = this.speeds(contact.document.w_final);
       const beyond = at - end;
-      return { gap: beyond * contact.document.eps_n, shift: this.shifts[last]! + beyond * shift, turn: this.turns[last]! + beyond * turn, ...rest };
+      return {
+        gap: beyond * contact.document.eps_n,
+        shift: this.shifts[last]! + beyond * shift,
+        turn: this.turns[last]! + beyond * turn,
+        ...rest,
+      };
     }
     let [low, high] = [0, last];
     while (high - low > 1) {
@@ -83,8 +97,12 @@ export class Spheres {
     const share = (at - time[low]!) / Math.max(1e-12, time[high]! - time[low]!);
     const mix = (column: Float64Array) => column[low]! + share * (column[high]! - column[low]!);
     return {
-      gap: -mix(compression), shift: mix(this.shifts), turn: mix(this.turns), sliding: sliding[low]!,
-      normal: mix(normal_force), tangential: mix(tangential_force),
+      gap: -mix(compression),
+      shift: mix(this.shifts),
+      turn: mix(this.turns),
+      sliding: sliding[low]!,
+      normal: mix(normal_force),
+      tangential: mix(tangential_force),
     };
   }
 
@@ -136,7 +154,10 @@ export class Spheres {
       // Spheres in contact are flat where they meet.
       const from = side < 0 ? 0 : centre[0];
       pen.within(from, 0, width / 2, height, () => {
-        pen.disc(x, y, RADIUS * scale, side < 0 ? colours.slipNegative : colours.slipPositive, { colour: colours.ink, width: 1.5 });
+        pen.disc(x, y, RADIUS * scale, side < 0 ? colours.slipNegative : colours.slipPositive, {
+          colour: colours.ink,
+          width: 1.5,
+        });
         for (let spoke = 0; spoke < 6; spoke++) {
           const angle = turn + (spoke * Math.PI) / 3;
           const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
@@ -151,23 +172,57 @@ export class Spheres {
     if (sliding !== undefined) {
       const reach = 0.9 * scale;
       const middle = [centre[0], centre[1]] as const;
-      pen.disc(...middle, 4, sliding === 0 ? colours.spring : colours.force, { colour: colours.paper, width: 1.5 });
+      pen.disc(...middle, 4, sliding === 0 ? colours.spring : colours.force, {
+        colour: colours.paper,
+        width: 1.5,
+      });
       arrow(pen, middle, [-normal * reach, 0], colours.normal);
       arrow(pen, middle, [normal * reach, 0], colours.normal);
       arrow(pen, middle, [0, tangential * reach], colours.force);
     }
-    const state = sliding === undefined ? (this.time < 0 ? "before the contact" : "behind the contact") : sliding === 0 ? "stick" : sliding > 0 ? "slip +" : "slip −";
+    const state =
+      sliding === undefined
+        ? this.time < 0
+          ? "before the contact"
+          : "behind the contact"
+        : sliding === 0
+          ? "stick"
+          : sliding > 0
+            ? "slip +"
+            : "slip −";
     pen.text(state, 10, 18, { colour: colours.ink, size: 13, bold: true });
-    pen.text(`t = ${this.time.toFixed(2).replace("-", "−")}`, width - 10, 18, { colour: colours.ink, size: 12, align: "right" });
+    pen.text(`t = ${this.time.toFixed(2).replace("-", "−")}`, width - 10, 18, {
+      colour: colours.ink,
+      size: 12,
+      align: "right",
+    });
   }
 }
 
-function arrow(pen: CanvasPen, [x, y]: readonly [number, number], [dx, dy]: [number, number], colour: string): void {
+function arrow(
+  pen: CanvasPen,
+  [x, y]: readonly [number, number],
+  [dx, dy]: [number, number],
+  colour: string,
+): void {
   const length = Math.hypot(dx, dy);
   if (length < 3) return;
   const [ux, uy] = [dx / length, dy / length];
   const head = Math.min(8, length);
-  pen.line([[x, y], [x + dx - ux * head * 0.6, y + dy - uy * head * 0.6]], { colour, width: 3 });
+  pen.line(
+    [
+      [x, y],
+      [x + dx - ux * head * 0.6, y + dy - uy * head * 0.6],
+    ],
+    { colour, width: 3 },
+  );
   const [tx, ty] = [x + dx, y + dy];
-  pen.area([[tx, ty], [tx - ux * head - uy * head * 0.5, ty - uy * head + ux * head * 0.5], [tx - ux * head + uy * head * 0.5, ty - uy * head - ux * head * 0.5]], colour);
+  pen.area(
+    [
+      [tx, ty],
+      [tx - ux * head - uy * head * 0.5, ty - uy * head + ux * head * 0.5],
+      [tx - ux * head + uy * head * 0.5, ty - uy * head - ux * head * 0.5],
+    ],
+    colour,
+  );
 }

@@ -4,7 +4,8 @@ import type { SceneRequest, Axis } from "./types";
 
 export type Tab = "spheres" | "system";
 export type Axes = "kappa-psi" | "kappa-ratio" | "axis-ratio" | "velocities";
-export type Quantity = "eps_t" | "count" | "time" | "lost" | "itinerary" | "v0" | "v1" | "v2" | "v3";
+export type Quantity =
+  "eps_t" | "count" | "time" | "lost" | "itinerary" | "v0" | "v1" | "v2" | "v3";
 
 export interface Bodies {
   radius_m: number;

@@ -16,9 +16,17 @@ export interface Theme {
 }
 
 const NAMES: [keyof Theme, string][] = [
-  ["ink", "--ink"], ["faint", "--faint"], ["rule", "--rule"], ["paper", "--paper"],
-  ["accent", "--accent"], ["slipPositive", "--slip-positive"], ["slipNegative", "--slip-negative"],
-  ["normal", "--normal"], ["force", "--force"], ["velocity", "--velocity"], ["spring", "--spring"],
+  ["ink", "--ink"],
+  ["faint", "--faint"],
+  ["rule", "--rule"],
+  ["paper", "--paper"],
+  ["accent", "--accent"],
+  ["slipPositive", "--slip-positive"],
+  ["slipNegative", "--slip-negative"],
+  ["normal", "--normal"],
+  ["force", "--force"],
+  ["velocity", "--velocity"],
+  ["spring", "--spring"],
   ["pinned", "--pinned"],
 ];
 
@@ -28,7 +36,9 @@ let known: Theme | undefined;
 export function theme(): Theme {
   if (!known) {
     const style = getComputedStyle(document.documentElement);
-    known = Object.fromEntries(NAMES.map(([key, name]) => [key, style.getPropertyValue(name).trim()])) as unknown as Theme;
+    known = Object.fromEntries(
+      NAMES.map(([key, name]) => [key, style.getPropertyValue(name).trim()]),
+    ) as unknown as Theme;
   }
   return known;
 }

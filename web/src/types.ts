@@ -11,7 +11,10 @@ export interface Axis {
 }
 
 /** A plane as the module takes it. */
-export type SceneRequest = { kind: "spheres" | "system"; x: Axis; y: Axis } & Record<string, unknown>;
+export type SceneRequest = { kind: "spheres" | "system"; x: Axis; y: Axis } & Record<
+  string,
+  unknown
+>;
 
 /** Rows of a map: four values, a count and a code for each point. */
 export interface MapPart {
@@ -35,7 +38,8 @@ export interface Boundary {
   sides: [number | null, number | null];
 }
 
-export type Stretch = { curve: number; back: boolean } | { line: [[number, number], [number, number]] };
+export type Stretch =
+  { curve: number; back: boolean } | { line: [[number, number], [number, number]] };
 
 export interface Region {
   itinerary: string;
@@ -68,7 +72,13 @@ export interface Switch {
 
 /** A collision, as `stickslip collide --format json` prints it, and what the page adds. */
 export interface Collision {
-  parameters: { kappa: number; psi: number; damping: number; tangential_damping?: number; law?: unknown };
+  parameters: {
+    kappa: number;
+    psi: number;
+    damping: number;
+    tangential_damping?: number;
+    law?: unknown;
+  };
   method: { name: string };
   eps_n: number;
   eps_t: number;

@@ -41,7 +41,8 @@ export function unpack(packed: Uint8Array, size: number): Uint8Array {
   };
   const tree = (probabilities: Uint16Array, begin: number, bits: number): number => {
     let node = 1;
-    for (let index = 0; index < bits; index++) node = (node << 1) | bit(probabilities, begin + node);
+    for (let index = 0; index < bits; index++)
+      node = (node << 1) | bit(probabilities, begin + node);
     return node - (1 << bits);
   };
   const reversed = (probabilities: Uint16Array, begin: number, bits: number): number => {
@@ -64,8 +65,14 @@ export function unpack(packed: Uint8Array, size: number): Uint8Array {
   };
 
   const literals = even(0x300 << LITERAL_CONTEXTS);
-  const [isMatch, isRepeated, isRepeated0, isRepeated1, isRepeated2, isLong] =
-    [even(12 << 4), even(12), even(12), even(12), even(12), even(12 << 4)] as const;
+  const [isMatch, isRepeated, isRepeated0, isRepeated1, isRepeated2, isLong] = [
+    even(12 << 4),
+    even(12),
+    even(12),
+    even(12),
+    even(12),
+    even(12 << 4),
+  ] as const;
   const [slots, positions, aligned] = [even(4 << 6), even(1 + 128 - 14), even(16)] as const;
   const [matchLength, repeatedLength] = [lengths(), lengths()];
   let [state, rep0, rep1, rep2, rep3] = [0, 0, 0, 0, 0];

@@ -11,7 +11,9 @@ interface Port {
 const port = globalThis as unknown as Port;
 let engine: Promise<Engine> | undefined;
 
-port.onmessage = async ({ data }: MessageEvent<{ module: WebAssembly.Module } | { id: number; task: Task }>) => {
+port.onmessage = async ({
+  data,
+}: MessageEvent<{ module: WebAssembly.Module } | { id: number; task: Task }>) => {
   if ("module" in data) {
     engine = Engine.start(data.module);
     return;

@@ -3,20 +3,33 @@
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-const PAGE = process.env.PAGE ?? fileURLToPath(new URL("../../crates/page/explorer.html", import.meta.url));
+const PAGE =
+  process.env.PAGE ?? fileURLToPath(new URL("../../crates/page/explorer.html", import.meta.url));
 
 /** A browser; its pages collect what they say, which should be nothing. */
 export async function launch() {
   const args = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-sync",
+    "--disable-background-networking",
+    "--disable-component-update",
   ];
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args });
+  const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args,
+  });
   return {
     close: () => browser.close(),
     /** Opens the page at a fragment. */
     async open(fragment = "", { width = 1300, height = 900, scheme = "light" } = {}) {
-      const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, acceptDownloads: true });
+      const context = await browser.newContext({
+        viewport: { width, height },
+        colorScheme: scheme,
+        acceptDownloads: true,
+      });
       const page = await context.newPage();
       const said = [];
       page.on("console", (message) => said.push(message.text()));
@@ -42,10 +55,18 @@ export const settled = (page) =>
   });
 
 /** Waits until the boundaries of the present window are traced. */
-export const traced = (page) => page.waitForFunction(() => / traced in | no boundaries/.test(document.querySelector("#status").textContent), undefined, { timeout: 60_000 });
+export const traced = (page) =>
+  page.waitForFunction(
+    () => / traced in | no boundaries/.test(document.querySelector("#status").textContent),
+    undefined,
+    { timeout: 60_000 },
+  );
 
 /** Waits until the map is there in its finest form. */
-export const mapped = (page) => page.waitForFunction(() => globalThis.explorer.plane.mapping.ready, undefined, { timeout: 60_000 });
+export const mapped = (page) =>
+  page.waitForFunction(() => globalThis.explorer.plane.mapping.ready, undefined, {
+    timeout: 60_000,
+  });
 
 /** Clicks, and returns the text of the file that comes. */
 export async function downloaded(page, selector) {

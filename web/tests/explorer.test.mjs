@@ -30,8 +30,24 @@ ofPage("500 contacts are those of the native program", "", async (page) => {
     const axis = { low: 1, high: 2, log: false };
     const answers = [];
     for (const { kappa, psi, law, damping } of contacts) {
-      const scene = { kind: "spheres", axes: "kappa-psi", x: axis, y: axis, law, damping, tangential_damping: 0, mu: 0.4, alpha: 2 / 7 };
-      const { answer } = await globalThis.explorer.hand.do({ task: "contact", scene, x: kappa, y: psi, intervals: 10 });
+      const scene = {
+        kind: "spheres",
+        axes: "kappa-psi",
+        x: axis,
+        y: axis,
+        law,
+        damping,
+        tangential_damping: 0,
+        mu: 0.4,
+        alpha: 2 / 7,
+      };
+      const { answer } = await globalThis.explorer.hand.do({
+        task: "contact",
+        scene,
+        x: kappa,
+        y: psi,
+        intervals: 10,
+      });
       answers.push(answer.document ?? answer);
     }
     return answers;
@@ -41,17 +57,32 @@ ofPage("500 contacts are those of the native program", "", async (page) => {
     const what = JSON.stringify({ native, own });
     assert.equal(own.itinerary, native.itinerary, what);
     const most = native.law === "paper" ? 1e-12 : 1e-11;
-    for (const key of ["eps_t", "eps_n", "contact_time"]) assert.ok(Math.abs(own[key] - native[key]) < most, `${key} ${what}`);
+    for (const key of ["eps_t", "eps_n", "contact_time"])
+      assert.ok(Math.abs(own[key] - native[key]) < most, `${key} ${what}`);
   });
 });
 
 ofPage("the regions of ten windows are those of the native program", "", async (page) => {
   for (const { kappa, psi, damping, boundaries, regions } of data("atlases.json")) {
-    const atlas = await page.evaluate(async ({ kappa, psi, damping }) => {
-      const axis = ([low, high]) => ({ low, high, log: true });
-      const scene = { kind: "spheres", axes: "kappa-psi", x: axis(kappa), y: axis(psi), law: "paper", damping, tangential_damping: 0, mu: 0.4, alpha: 2 / 7 };
-      return (await globalThis.explorer.hand.do({ task: "ask", scene, request: { do: "atlas" } })).answer;
-    }, { kappa, psi, damping });
+    const atlas = await page.evaluate(
+      async ({ kappa, psi, damping }) => {
+        const axis = ([low, high]) => ({ low, high, log: true });
+        const scene = {
+          kind: "spheres",
+          axes: "kappa-psi",
+          x: axis(kappa),
+          y: axis(psi),
+          law: "paper",
+          damping,
+          tangential_damping: 0,
+          mu: 0.4,
+          alpha: 2 / 7,
+        };
+        return (await globalThis.explorer.hand.do({ task: "ask", scene, request: { do: "atlas" } }))
+          .answer;
+      },
+      { kappa, psi, damping },
+    );
     const what = JSON.stringify({ kappa, psi, damping, objection: atlas.objection });
     assert.deepEqual(atlas.regions.map((it) => it.itinerary).sort(), regions, what);
     assert.equal(atlas.boundaries.length, boundaries, what);
@@ -64,13 +95,17 @@ ofPage("a dragged point shows its contact, and the link follows", "", async (pag
   const box = await page.locator("#plane").boundingBox();
   await page.mouse.move(box.x + 200, box.y + 200);
   await page.mouse.down();
-  for (let step = 0; step <= 20; step++) await page.mouse.move(box.x + 200 + 10 * step, box.y + 200 + 5 * step);
+  for (let step = 0; step <= 20; step++)
+    await page.mouse.move(box.x + 200 + 10 * step, box.y + 200 + 5 * step);
   await page.mouse.up();
   await settled(page);
   const [kappa, psi] = await page.evaluate(() => globalThis.explorer.store.state.point);
   assert.ok(kappa > 5 && kappa < 60 && psi > 0.5 && psi < 1.6, `${kappa} ${psi}`);
   await page.waitForFunction((kappa) => location.hash.includes(String(kappa)), kappa);
-  assert.match(await page.textContent("#lines"), new RegExp(`--kappa ${kappa} --psi ${psi} --method auto`));
+  assert.match(
+    await page.textContent("#lines"),
+    new RegExp(`--kappa ${kappa} --psi ${psi} --method auto`),
+  );
   assert.match(await page.textContent("#facts"), /itinerary/);
 });
 
@@ -92,7 +127,10 @@ ofPage("wheel, Shift and keys change the window, and undo goes back", "", async 
   await page.mouse.up();
   await page.keyboard.up("Shift");
   const moved = await window();
-  assert.ok(moved.low < zoomed.low && Math.abs(Math.log(moved.high / moved.low) - Math.log(zoomed.high / zoomed.low)) < 0.01);
+  assert.ok(
+    moved.low < zoomed.low &&
+      Math.abs(Math.log(moved.high / moved.low) - Math.log(zoomed.high / zoomed.low)) < 0.01,
+  );
   await page.waitForTimeout(600);
   await page.evaluate(() => globalThis.explorer.store.change({ point: [20, 0.8] }));
   await page.waitForTimeout(600);
@@ -112,7 +150,16 @@ ofPage("two fingers zoom", "", async (page) => {
     const box = canvas.getBoundingClientRect();
     canvas.setPointerCapture = () => {};
     const send = (type, pointerId, x) =>
-      canvas.dispatchEvent(new PointerEvent(type, { pointerId, clientX: box.left + x, clientY: box.top + 200, button: 0, pointerType: "touch", bubbles: true }));
+      canvas.dispatchEvent(
+        new PointerEvent(type, {
+          pointerId,
+          clientX: box.left + x,
+          clientY: box.top + 200,
+          button: 0,
+          pointerType: "touch",
+          bubbles: true,
+        }),
+      );
     send("pointerdown", 1, 200);
     send("pointerdown", 2, 300);
     send("pointermove", 2, 400);
@@ -150,19 +197,45 @@ ofPage("every file can be read", "", async (page) => {
   const file = async (what) => (await downloaded(page, `[data-write="${what}"]`)).bytes;
   for (const what of ["course-svg", "plane-svg"]) {
     const text = String(await file(what));
-    const problem = await page.evaluate((text) => new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror")?.textContent, text);
+    const problem = await page.evaluate(
+      (text) =>
+        new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror")
+          ?.textContent,
+      text,
+    );
     assert.equal(problem, undefined, what);
     assert.ok(text.startsWith("<svg") && text.includes("<path"), what);
   }
-  for (const what of ["course-png", "plane-png"]) assert.equal((await file(what)).subarray(1, 4).toString(), "PNG", what);
-  const course = String(await file("course-csv")).trim().split("\n");
-  assert.equal(course[0], "time,compression,normal_velocity,normal_force,spring,tangential_force,velocity,sliding");
+  for (const what of ["course-png", "plane-png"])
+    assert.equal((await file(what)).subarray(1, 4).toString(), "PNG", what);
+  const course = String(await file("course-csv"))
+    .trim()
+    .split("\n");
+  assert.equal(
+    course[0],
+    "time,compression,normal_velocity,normal_force,spring,tangential_force,velocity,sliding",
+  );
   assert.equal(course.length, 1 + 701 + 6);
-  assert.ok(course.slice(1).every((line) => line.split(",").length === 8 && line.split(",").every((it) => Number.isFinite(Number(it)))));
-  assert.equal(String(await file("events-csv")).trim().split("\n").length, 7);
+  assert.ok(
+    course
+      .slice(1)
+      .every(
+        (line) =>
+          line.split(",").length === 8 &&
+          line.split(",").every((it) => Number.isFinite(Number(it))),
+      ),
+  );
+  assert.equal(
+    String(await file("events-csv"))
+      .trim()
+      .split("\n").length,
+    7,
+  );
   const found = JSON.parse(await file("course-json"));
   assert.deepEqual([found.schema, found.itinerary], ["stickslip.collision/1", "+o-o+o-"]);
-  const map = String(await file("plane-csv")).trim().split("\n");
+  const map = String(await file("plane-csv"))
+    .trim()
+    .split("\n");
   assert.match(map[0], /^κ,ψ,count,eps_t,contact_time,energy_lost,eps_n$/);
   const [width, height] = await page.evaluate(() => globalThis.explorer.plane.mapping.data.size);
   assert.equal(map.length, 1 + width * height);
@@ -173,8 +246,26 @@ test("a link leads to the same view", async () => {
   const first = await browser.open("preset=figure4");
   await first.page.evaluate(() => {
     const { store } = globalThis.explorer;
-    store.change({ damping: 0.05, law: "mfix/LSD", quantity: "lost", point: [7.5, 0.321], boundaries: false, x: { low: 2, high: 10, log: true } });
-    store.change({ pinned: { axes: "axis-ratio", point: [3, 1], law: "paper", damping: 0.2, tangential: 0, mu: 0.3, alpha: 0.25, bodies: store.state.bodies } });
+    store.change({
+      damping: 0.05,
+      law: "mfix/LSD",
+      quantity: "lost",
+      point: [7.5, 0.321],
+      boundaries: false,
+      x: { low: 2, high: 10, log: true },
+    });
+    store.change({
+      pinned: {
+        axes: "axis-ratio",
+        point: [3, 1],
+        law: "paper",
+        damping: 0.2,
+        tangential: 0,
+        mu: 0.3,
+        alpha: 0.25,
+        bodies: store.state.bodies,
+      },
+    });
   });
   await first.page.waitForFunction(() => location.hash.includes("pinned"));
   const hash = await first.page.evaluate(() => location.hash.slice(1));
@@ -188,37 +279,55 @@ test("a link leads to the same view", async () => {
   await second.close();
 });
 
-ofPage("a broken link is no harm", "preset=nothing&x=%7B&point=%5B1%5D&damping=null&law=nonsense", async (page) => {
-  await page.waitForSelector("#facts .error");
-  assert.match(await page.textContent("#facts"), /no law is called nonsense/);
-  await page.selectOption("#preset", "plane");
-  await page.waitForSelector("table.facts");
-});
+ofPage(
+  "a broken link is no harm",
+  "preset=nothing&x=%7B&point=%5B1%5D&damping=null&law=nonsense",
+  async (page) => {
+    await page.waitForSelector("#facts .error");
+    assert.match(await page.textContent("#facts"), /no law is called nonsense/);
+    await page.selectOption("#preset", "plane");
+    await page.waitForSelector("table.facts");
+  },
+);
 
-ofPage("an own system is typed, with a mistake that is mended", "tab=system&example=ball&across=e&up=g&sx=%7B%22low%22%3A0.3%2C%22high%22%3A0.7%2C%22log%22%3Afalse%7D&sy=%7B%22low%22%3A5%2C%22high%22%3A15%2C%22log%22%3Afalse%7D&most=6", async (page) => {
-  await page.waitForFunction(() => globalThis.explorer.system.run?.events.length > 3);
-  await traced(page);
-  const regions = await page.evaluate(() => globalThis.explorer.plane.atlas.regions.map((it) => it.itinerary).sort());
-  assert.ok(regions.includes("bounce × 3") && regions.length >= 4, JSON.stringify(regions));
-  const text = await page.inputValue("#editor");
-  await page.fill("#editor", text.replace("v' = -g", "v' = -gg"));
-  await page.waitForSelector("#problem:not([hidden])");
-  assert.match(await page.textContent("#problem"), /line \d+, column 7: `gg` is not known; did you mean `g`\?/);
-  assert.equal(await page.getAttribute("#editor", "aria-invalid"), "true");
-  assert.equal(await page.locator("#gutter .wrong").count(), 1);
-  await page.fill("#editor", text.replace("e = 0.5", "e = 0.25"));
-  await page.waitForSelector("#problem", { state: "hidden" });
-  await page.waitForFunction(() => globalThis.explorer.system.run?.outcome === "accumulation");
-  const { events, accumulation } = await page.evaluate(() => globalThis.explorer.system.run);
-  // The first bounce is after 1 s, and each flight takes a quarter of the one before.
-  assert.ok(Math.abs(events[0].time - 1) < 1e-9 && Math.abs(accumulation - 5 / 3) < 1e-6, String(accumulation));
-  await page.fill('#sliders [data-parameter="e"][type="text"]', "0.5");
-  await page.press('#sliders [data-parameter="e"][type="text"]', "Enter");
-  await page.waitForFunction(() => Math.abs((globalThis.explorer.system.run?.events[1]?.time ?? 0) - 2) < 1e-9);
-  assert.match(await page.textContent("#lines"), /stickslip run system.slip --set e=0.5/);
-  const { name, bytes } = await downloaded(page, '[data-write="text"]');
-  assert.deepEqual([name, String(bytes)], ["system.slip", text.replace("e = 0.5", "e = 0.25")]);
-});
+ofPage(
+  "an own system is typed, with a mistake that is mended",
+  "tab=system&example=ball&across=e&up=g&sx=%7B%22low%22%3A0.3%2C%22high%22%3A0.7%2C%22log%22%3Afalse%7D&sy=%7B%22low%22%3A5%2C%22high%22%3A15%2C%22log%22%3Afalse%7D&most=6",
+  async (page) => {
+    await page.waitForFunction(() => globalThis.explorer.system.run?.events.length > 3);
+    await traced(page);
+    const regions = await page.evaluate(() =>
+      globalThis.explorer.plane.atlas.regions.map((it) => it.itinerary).sort(),
+    );
+    assert.ok(regions.includes("bounce × 3") && regions.length >= 4, JSON.stringify(regions));
+    const text = await page.inputValue("#editor");
+    await page.fill("#editor", text.replace("v' = -g", "v' = -gg"));
+    await page.waitForSelector("#problem:not([hidden])");
+    assert.match(
+      await page.textContent("#problem"),
+      /line \d+, column 7: `gg` is not known; did you mean `g`\?/,
+    );
+    assert.equal(await page.getAttribute("#editor", "aria-invalid"), "true");
+    assert.equal(await page.locator("#gutter .wrong").count(), 1);
+    await page.fill("#editor", text.replace("e = 0.5", "e = 0.25"));
+    await page.waitForSelector("#problem", { state: "hidden" });
+    await page.waitForFunction(() => globalThis.explorer.system.run?.outcome === "accumulation");
+    const { events, accumulation } = await page.evaluate(() => globalThis.explorer.system.run);
+    // The first bounce is after 1 s, and each flight takes a quarter of the one before.
+    assert.ok(
+      Math.abs(events[0].time - 1) < 1e-9 && Math.abs(accumulation - 5 / 3) < 1e-6,
+      String(accumulation),
+    );
+    await page.fill('#sliders [data-parameter="e"][type="text"]', "0.5");
+    await page.press('#sliders [data-parameter="e"][type="text"]', "Enter");
+    await page.waitForFunction(
+      () => Math.abs((globalThis.explorer.system.run?.events[1]?.time ?? 0) - 2) < 1e-9,
+    );
+    assert.match(await page.textContent("#lines"), /stickslip run system.slip --set e=0.5/);
+    const { name, bytes } = await downloaded(page, '[data-write="text"]');
+    assert.deepEqual([name, String(bytes)], ["system.slip", text.replace("e = 0.5", "e = 0.25")]);
+  },
+);
 
 ofPage("all examples run", "tab=system", async (page) => {
   for (const name of await page.locator("#example option").allTextContents()) {
@@ -242,19 +351,28 @@ ofPage("a worker that dies is started again, and the map comes", "", async (page
   await settled(page);
   await mapped(page);
   await traced(page);
-  assert.ok(await page.evaluate(() => globalThis.explorer.crew.hands.every((it) => it.restarts === 1)));
+  assert.ok(
+    await page.evaluate(() => globalThis.explorer.crew.hands.every((it) => it.restarts === 1)),
+  );
 });
 
 ofPage("a task that takes too long is ended", "", async (page) => {
   const answer = await page.evaluate(async () => {
     const text = "state x = 1\nx' = sin(1e5*t)\nend = 1e9";
-    return (await globalThis.explorer.hand.do({ task: "ask", request: { do: "run", text, set: {}, end: null } }, 200)).answer;
+    return (
+      await globalThis.explorer.hand.do(
+        { task: "ask", request: { do: "run", text, set: {}, end: null } },
+        200,
+      )
+    ).answer;
   });
   assert.match(answer.error, /longer than 0.2 s|steps/);
 });
 
 ofPage("every preset and the tour show something", "", async (page) => {
-  for (const id of await page.locator("#preset option").evaluateAll((options) => options.map((it) => it.value))) {
+  for (const id of await page
+    .locator("#preset option")
+    .evaluateAll((options) => options.map((it) => it.value))) {
     await page.selectOption("#preset", id);
     await page.waitForFunction(() => document.querySelector("table.facts"));
     assert.equal(await page.locator("#facts .error").count(), 0, id);
@@ -273,37 +391,61 @@ ofPage("the points of the paper have 0 to 8 switches", "preset=figure4", async (
   for (let letter = 0; letter < 16; letter++) {
     await page.locator("#letters button").nth(letter).click();
     const ratio = await page.evaluate(() => globalThis.explorer.store.state.point[1]);
-    await page.waitForFunction((psi) => Math.abs((globalThis.explorer.contact.contact?.document.parameters.psi ?? 0) / psi - 1) < 1e-6, ratio / 1.4);
-    counts.push(await page.evaluate(() => globalThis.explorer.contact.contact.document.switch_count));
+    await page.waitForFunction(
+      (psi) =>
+        Math.abs((globalThis.explorer.contact.contact?.document.parameters.psi ?? 0) / psi - 1) <
+        1e-6,
+      ratio / 1.4,
+    );
+    counts.push(
+      await page.evaluate(() => globalThis.explorer.contact.contact.document.switch_count),
+    );
   }
   assert.deepEqual(counts, [0, 2, 4, 6, 8, 6, 8, 6, 4, 6, 4, 2, 4, 2, 4, 2]);
 });
 
 ofPage("velocities of steel spheres", "preset=figure2", async (page) => {
-  await page.waitForFunction(() => document.querySelector("#facts")?.textContent.includes("units of time"));
+  await page.waitForFunction(() =>
+    document.querySelector("#facts")?.textContent.includes("units of time"),
+  );
   const { parameters } = await page.evaluate(() => globalThis.explorer.contact.contact.document);
   assert.ok(parameters.kappa > 1000, JSON.stringify(parameters));
 });
 
-ofPage("all is in 360 px, in the dark", "", async (page) => {
-  await settled(page);
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  assert.equal(wide, 360);
-  const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  assert.match(dark, /^rgb\((\d|1\d|2\d), /);
-  await page.click("#tab-system");
-  await page.waitForFunction(() => globalThis.explorer.system.run);
-  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
-}, { width: 360, height: 740, scheme: "dark" });
+ofPage(
+  "all is in 360 px, in the dark",
+  "",
+  async (page) => {
+    await settled(page);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.equal(wide, 360);
+    const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    assert.match(dark, /^rgb\((\d|1\d|2\d), /);
+    await page.click("#tab-system");
+    await page.waitForFunction(() => globalThis.explorer.system.run);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
+  },
+  { width: 360, height: 740, scheme: "dark" },
+);
 
 ofPage("everything has a name for a screen reader, and the result is told", "", async (page) => {
   await settled(page);
   const nameless = await page.evaluate(() => {
-    const named = (it) => it.getAttribute("aria-label") || it.textContent.trim() || it.labels?.[0]?.textContent.trim() || it.title;
-    return [...document.querySelectorAll("button, input, select, textarea, canvas, dialog")].filter((it) => !named(it)).map((it) => it.outerHTML);
+    const named = (it) =>
+      it.getAttribute("aria-label") ||
+      it.textContent.trim() ||
+      it.labels?.[0]?.textContent.trim() ||
+      it.title;
+    return [...document.querySelectorAll("button, input, select, textarea, canvas, dialog")]
+      .filter((it) => !named(it))
+      .map((it) => it.outerHTML);
   });
   assert.deepEqual(nameless, []);
-  await page.waitForFunction(() => /6 switches, tangential restitution -0.0417/.test(document.querySelector("#spoken").textContent));
+  await page.waitForFunction(() =>
+    /6 switches, tangential restitution -0.0417/.test(
+      document.querySelector("#spoken").textContent,
+    ),
+  );
   assert.match(await page.getAttribute("#course", "aria-label"), /Forces from/);
 });
 
@@ -323,6 +465,8 @@ ofPage("the first curves come soon, and a frame of dragging is short", "", async
     return work.sort((one, other) => one - other);
   });
   const { took } = await page.evaluate(() => ({ took: globalThis.explorer.plane.mapping.took }));
-  console.log(`first contact after ${Math.round(first)} ms, drawing of a frame ${frames[30].toFixed(1)} ms, map ${Math.round(took)} ms`);
+  console.log(
+    `first contact after ${Math.round(first)} ms, drawing of a frame ${frames[30].toFixed(1)} ms, map ${Math.round(took)} ms`,
+  );
   assert.ok(first < 5000 && frames[30] < 50);
 });

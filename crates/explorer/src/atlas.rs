@@ -10,8 +10,8 @@ use stickslip_tracer::{
     VerifyOptions, Watch, Window,
 };
 
+use crate::axis::Axis;
 use crate::itinerary;
-use crate::scene::Axis;
 use crate::spheres::{Spheres, collide};
 use crate::system::SystemPlane;
 

@@ -2,17 +2,19 @@
 //!
 //! The page writes a request as JSON into [`input`], calls [`call`], and reads the answer at
 //! [`text_ptr`]. Maps and courses are raw arrays: [`map`] and [`course`] fill [`values_ptr`],
-//! [`counts_ptr`], [`codes_ptr`] and [`numbers_ptr`], which stay valid until the next call. There is
-//! one state for each thread, and each worker of the page has a module of its own.
+//! [`counts_ptr`], [`codes_ptr`] and [`numbers_ptr`], which stay valid until the next call. There
+//! is one state for each thread, and each worker of the page has a module of its own.
 //!
 //! Errors are answers with a field `error`. Nothing here panics on any request.
 //!
 //! The modules in reading order: `request` has what a page asks for, `scene` the plane that a map
-//! or an atlas shows, `spheres` and `system` its two kinds, `itinerary` their colours, `atlas` the
-//! boundaries, and `state` what the arrays hold.
+//! or an atlas shows, `axis` and `point` what it is made of, `spheres` and `system` its two kinds,
+//! `itinerary` their colours, `atlas` the boundaries, and `state` what the arrays hold.
 
 mod atlas;
+mod axis;
 mod itinerary;
+mod point;
 mod request;
 mod scene;
 mod spheres;

@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 use stickslip_model::presets;
 
 use crate::scene::{Scene, SceneRequest};
-use crate::state::State;
 use crate::{spheres, system};
 
 /// A request, by its field `do`.
@@ -32,28 +31,32 @@ pub enum Request {
     Run(system::RunRequest),
 }
 
-/// The answer to a request.
+/// The answer to a request about the scene that is shown.
 ///
 /// # Errors
 /// An object whose `error` says what is wrong.
-pub fn answer(request: Request, state: &mut State) -> Result<Value, Value> {
+pub fn answer(request: Request, shown: &mut Option<Scene>) -> Result<Value, Value> {
     let said = |error: String| json!({ "error": error });
     match request {
         Request::About => Ok(json!({ "version": env!("CARGO_PKG_VERSION") })),
         Request::Laws => Ok(laws()),
         Request::Scene { scene } => {
-            let scene = Scene::new(*scene)?;
-            let fields = json!({ "fields": scene.fields() });
-            state.show(scene);
-            Ok(fields)
+            let scene = shown.insert(Scene::new(*scene)?);
+            Ok(json!({ "fields": scene.fields() }))
         }
-        Request::Atlas => state.scene()?.atlas().map_err(said),
-        Request::Collision { x, y } => state.scene()?.spheres()?.document([x, y]).map_err(said),
+        Request::Atlas => of(shown.as_ref())?.atlas().map_err(said),
+        Request::Collision { x, y } => {
+            of(shown.as_ref())?.spheres()?.document([x, y]).map_err(said)
+        }
         Request::Line { kappa, highest } => spheres::line(kappa, highest).map_err(said),
         Request::Limits { kappa } => Ok(spheres::limits(kappa)),
         Request::Parse { text } => system::parse(&text),
         Request::Run(request) => request.run(),
     }
+}
+
+fn of(shown: Option<&Scene>) -> Result<&Scene, Value> {
+    shown.ok_or_else(|| json!({ "error": "there is no scene" }))
 }
 
 fn laws() -> Value {

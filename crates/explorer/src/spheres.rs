@@ -10,7 +10,7 @@ use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Statistics;
 
 use crate::itinerary;
-use crate::scene::MapPoint;
+use crate::point::MapPoint;
 
 /// The numbers of a moment of a course.
 pub const MOMENT: usize = 8;

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::request;
-use crate::scene::Scene;
+use crate::scene::{Kind, Scene};
 
 /// The state of one thread.
 #[derive(Default)]
@@ -42,23 +42,10 @@ impl State {
     pub fn call(&mut self) -> usize {
         let answer = serde_json::from_slice(&self.input)
             .map_err(|error| json!({ "error": error.to_string() }))
-            .and_then(|request| request::answer(request, self));
+            .and_then(|request| request::answer(request, &mut self.scene));
         let answer = answer.unwrap_or_else(|error| error);
         self.text = answer.to_string();
         self.text.len()
-    }
-
-    /// Sets the scene that maps and courses show.
-    pub fn show(&mut self, scene: Scene) {
-        self.scene = Some(scene);
-    }
-
-    /// The scene.
-    ///
-    /// # Errors
-    /// There is none yet.
-    pub fn scene(&self) -> Result<&Scene, Value> {
-        self.scene.as_ref().ok_or_else(|| json!({ "error": "there is no scene" }))
     }
 
     /// Computes rows of a map.
@@ -87,7 +74,7 @@ impl State {
         self.numbers.clear();
         self.text.clear();
         match &self.scene {
-            Some(Scene { kind: crate::scene::Kind::Spheres(spheres), .. }) => {
+            Some(Scene { kind: Kind::Spheres(spheres), .. }) => {
                 match spheres.course(point, intervals, &mut self.numbers) {
                     Ok(moments) => return moments,
                     Err(error) => self.text = error,

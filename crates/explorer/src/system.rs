@@ -9,7 +9,7 @@ use stickslip_solver::{EmbeddedPair, Options, Outcome};
 use stickslip_tracer::{DynamicFired, Point};
 
 use crate::itinerary;
-use crate::scene::MapPoint;
+use crate::point::MapPoint;
 
 /// A run as a page asks for it.
 #[derive(Deserialize)]

@@ -18,7 +18,13 @@ let seed = 20081127;
 const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
 const digits = (value) => Number(value.toPrecision(6));
 
-const LAWS = ["gran/hooke/history", "gran/hertz/history", "granular/hertz/tsuji/mindlin_rescale/force", "mfix/HERTZIAN", "yade/FrictPhys_CundallStrack"];
+const LAWS = [
+  "gran/hooke/history",
+  "gran/hertz/history",
+  "granular/hertz/tsuji/mindlin_rescale/force",
+  "mfix/HERTZIAN",
+  "yade/FrictPhys_CundallStrack",
+];
 const groups = [
   { count: 250, law: "paper", damping: 0 },
   { count: 100, law: "paper", damping: 0.1 },
@@ -26,22 +32,38 @@ const groups = [
   ...LAWS.map((law) => ({ count: 20, law, damping: law.startsWith("yade") ? 0 : 0.2 })),
 ];
 const contacts = groups.flatMap(({ count, law, damping }) => {
-  const rows = Array.from({ length: count }, () => [digits(Math.exp(Math.log(0.1) + random() * Math.log(5000))), digits(0.02 + 2.4 * random())]);
+  const rows = Array.from({ length: count }, () => [
+    digits(Math.exp(Math.log(0.1) + random() * Math.log(5000))),
+    digits(0.02 + 2.4 * random()),
+  ]);
   const input = join(folder, "in.csv");
   const output = join(folder, "out.csv");
   rmSync(output, { force: true });
   writeFileSync(input, `kappa,psi\n${rows.map((row) => row.join(",")).join("\n")}\n`);
   const options = ["--damping", String(damping), "--law", law, "--method", "auto"];
-  execFileSync(program, ["collide", "--batch", input, "--out", output, ...options], { stdio: ["ignore", "ignore", "inherit"] });
-  const [header, ...lines] = readFileSync(output, "utf8").trim().split("\n").map((line) => line.split(","));
+  execFileSync(program, ["collide", "--batch", input, "--out", output, ...options], {
+    stdio: ["ignore", "ignore", "inherit"],
+  });
+  const [header, ...lines] = readFileSync(output, "utf8")
+    .trim()
+    .split("\n")
+    .map((line) => line.split(","));
   const field = (line, name) => line[header.indexOf(name)];
   return lines.map((line, index) => ({
-    kappa: rows[index][0], psi: rows[index][1], law, damping,
-    eps_t: Number(field(line, "eps_t")), eps_n: Number(field(line, "eps_n")),
-    itinerary: field(line, "itinerary"), contact_time: Number(field(line, "contact_time")),
+    kappa: rows[index][0],
+    psi: rows[index][1],
+    law,
+    damping,
+    eps_t: Number(field(line, "eps_t")),
+    eps_n: Number(field(line, "eps_n")),
+    itinerary: field(line, "itinerary"),
+    contact_time: Number(field(line, "contact_time")),
   }));
 });
-writeFileSync(out("contacts.json"), `[\n${contacts.map((it) => JSON.stringify(it)).join(",\n")}\n]\n`);
+writeFileSync(
+  out("contacts.json"),
+  `[\n${contacts.map((it) => JSON.stringify(it)).join(",\n")}\n]\n`,
+);
 
 const windows = [
   { kappa: [5, 20], psi: [0.2, 2.5], damping: 0 },
@@ -57,10 +79,26 @@ const windows = [
 ];
 const atlases = windows.map((window, index) => {
   const file = join(folder, `${index}.json`);
-  const options = ["--kappa", window.kappa.join(":"), "--psi", window.psi.join(":"), "--damping", String(window.damping)];
-  execFileSync(program, ["trace", ...options, "--out", file], { stdio: ["ignore", "ignore", "inherit"] });
+  const options = [
+    "--kappa",
+    window.kappa.join(":"),
+    "--psi",
+    window.psi.join(":"),
+    "--damping",
+    String(window.damping),
+  ];
+  execFileSync(program, ["trace", ...options, "--out", file], {
+    stdio: ["ignore", "ignore", "inherit"],
+  });
   const { regions, boundaries } = JSON.parse(readFileSync(file, "utf8"));
-  return { ...window, boundaries: boundaries.length, regions: regions.map((region) => region.itinerary).sort() };
+  return {
+    ...window,
+    boundaries: boundaries.length,
+    regions: regions.map((region) => region.itinerary).sort(),
+  };
 });
-writeFileSync(out("atlases.json"), `[\n${atlases.map((it) => JSON.stringify(it)).join(",\n")}\n]\n`);
+writeFileSync(
+  out("atlases.json"),
+  `[\n${atlases.map((it) => JSON.stringify(it)).join(",\n")}\n]\n`,
+);
 rmSync(folder, { recursive: true });
