@@ -20,6 +20,7 @@ export class ContactView {
   private pinned: Contact | undefined;
   private pinnedKey = "";
   private wanted = "";
+  private latest: State | undefined;
   private readonly canvas = byId<HTMLCanvasElement>("course");
   private readonly spheres: Spheres;
   private cursor: number | undefined;
@@ -75,16 +76,17 @@ export class ContactView {
 
   /** Shows the contact of a state, as soon as it is computed. */
   show(state: State): void {
+    this.latest = state;
     const key = JSON.stringify([scene(state, ANY, ANY), state.point, state.pinned]);
     if (key === this.wanted) return;
     this.wanted = key;
-    if (!this.hand.busy) void this.compute(state, key);
+    if (!this.computing) void this.compute(state, key);
   }
 
-  private latest: State | undefined;
+  private computing = false;
 
   private async compute(state: State, key: string): Promise<void> {
-    this.latest = state;
+    this.computing = true;
     const ask = { task: "contact" as const, intervals: INTERVALS };
     const pinnedKey = JSON.stringify(state.pinned);
     const pinned = state.pinned;
@@ -101,17 +103,15 @@ export class ContactView {
     if (answer.error) this.refuse(answer.error);
     else this.take(state, answer);
     this.times = { worker: ms, draw: performance.now() - begun };
+    this.computing = false;
     if (this.wanted !== key) this.next();
   }
 
   /** Computes what was wanted while another contact was computed. */
   private next(): void {
-    const state = this.source();
+    const state = this.latest;
     if (state) void this.compute(state, this.wanted);
   }
-
-  /** Where the newest state is. */
-  source: () => State | undefined = () => this.latest;
 
   private refuse(error: string): void {
     this.contact = this.course = this.chart = undefined;
@@ -149,7 +149,7 @@ export class ContactView {
   }
 
   redraw(): void {
-    const state = this.source();
+    const state = this.latest;
     if (this.contact && state) this.take(state, this.contact);
     this.spheres.draw();
   }

@@ -30,7 +30,7 @@ export class Hand {
   /** How often it was started again. */
   restarts = 0;
 
-  constructor(private readonly module: WebAssembly.Module) {}
+  constructor(private readonly module: Promise<WebAssembly.Module>) {}
 
   get busy(): boolean {
     return this.pending.size > 0;
@@ -43,9 +43,15 @@ export class Hand {
       const late = () => this.restart(`this takes longer than ${(most ?? 0) / 1000} s`);
       const timer = most === undefined ? undefined : setTimeout(late, most);
       this.pending.set(id, { resolve: resolve as Pending["resolve"], timer });
-      this.worker ??= this.start();
-      this.worker.postMessage({ id, task });
+      const worker = this.warm();
+      // Behind the module, which the worker gets first.
+      void this.module.then(() => worker.postMessage({ id, task }));
     });
+  }
+
+  /** Starts the worker, if it is not there yet. */
+  warm(): Worker {
+    return (this.worker ??= this.start());
   }
 
   /** Ends what the worker does; the next task starts another one. */
@@ -81,7 +87,7 @@ export class Hand {
       event.preventDefault();
       this.restart("a worker ended; it was started again");
     };
-    worker.postMessage({ module: this.module });
+    void this.module.then((module) => worker.postMessage({ module }));
     return worker;
   }
 }
@@ -102,7 +108,7 @@ export class Crew {
   private finished: () => void = () => {};
   private take: (band: Band, part: MapPart) => void = () => {};
 
-  constructor(module: WebAssembly.Module, count: number) {
+  constructor(module: Promise<WebAssembly.Module>, count: number) {
     this.hands = Array.from({ length: count }, () => new Hand(module));
   }
 

@@ -43,6 +43,8 @@ class Page {
   readonly store: Store;
   private preset: string;
   private laws: Law[] = [];
+  /** Whether a contact was shown. */
+  private begun = false;
   private readonly places: Places = { letters: [], top: [], small: [] };
   private readonly plane: Plane;
   private readonly contact: ContactView;
@@ -52,18 +54,23 @@ class Page {
   private hashTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly show = onceAFrame(() => this.showNow());
 
-  constructor(module: WebAssembly.Module, from: { state: State; preset: string }) {
+  constructor(module: Promise<WebAssembly.Module>, from: { state: State; preset: string }) {
     this.store = new Store(from.state);
     this.preset = from.preset;
     const cores = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     this.hand = new Hand(module);
+    this.hand.warm();
     this.crew = new Crew(module, cores);
     this.contact = new ContactView(
       this.hand,
       () => this.laws,
-      () => this.showLines(),
+      () => {
+        this.showLines();
+        // The first curves come before the first map, for which all processors work.
+        if (!this.begun) this.show();
+        this.begun = true;
+      },
     );
-    this.contact.source = () => this.store.state;
     this.system = new SystemView(new Hand(module), this.store, () => {
       this.show();
       this.showLines();
@@ -147,7 +154,7 @@ class Page {
     byId("no-plane").hidden = model !== undefined;
     if (state.tab === "spheres") this.contact.show(state);
     else void this.system.show(state);
-    if (model) this.plane.show(model);
+    if (model && (this.begun || state.tab === "system")) this.plane.show(model);
     this.showLegend();
     clearTimeout(this.hashTimer);
     this.hashTimer = setTimeout(() => {
@@ -494,13 +501,15 @@ const HINT = "Drag the point; wheel or pinch to zoom; Shift and drag to move the
 
 async function start(): Promise<void> {
   try {
-    const module = await compiled();
+    // Controls are drawn, and the first worker starts, while the module is unpacked.
+    const module = new Promise((resolve) => setTimeout(resolve)).then(compiled);
     const page = new Page(module, decoded(location.hash));
     (globalThis as Record<string, unknown>).explorer = page.inside;
+    await module;
     document.body.classList.add("ready");
   } catch (error) {
-    byId("told").textContent =
-      `This browser cannot run the page: ${error instanceof Error ? error.message : String(error)}`;
+    const reason = error instanceof Error ? error.message : String(error);
+    byId("told").textContent = `This browser cannot run the page: ${reason}`;
   }
 }
 

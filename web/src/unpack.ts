@@ -15,18 +15,22 @@ export function unpack(packed: Uint8Array, size: number): Uint8Array {
   const out = new Uint8Array(size);
   // Thirteen bytes of header, and one that is always 0.
   let at = 18;
-  // As signed numbers of 32 bits, less 2³¹ where they are compared: these stay in registers.
-  let range = -1;
-  let code = (packed[14]! << 24) | (packed[15]! << 16) | (packed[16]! << 8) | packed[17]!;
+  // Signed numbers of 32 bits, compared without their sign. Variables of closures would be objects
+  // on a heap where they are larger than 31 bits; elements of an array are not.
+  const coder = new Int32Array([
+    -1,
+    (packed[14]! << 24) | (packed[15]! << 16) | (packed[16]! << 8) | packed[17]!,
+  ]);
 
   const bit = (probabilities: Uint16Array, index: number): number => {
     const probability = probabilities[index]!;
+    let range = coder[0]!;
+    let code = coder[1]!;
     const bound = Math.imul(range >>> 11, probability);
-    let found: number;
+    let found = 0;
     if ((code ^ SIGN) < (bound ^ SIGN)) {
       range = bound;
       probabilities[index] = probability + ((MODEL - probability) >> 5);
-      found = 0;
     } else {
       range = (range - bound) | 0;
       code = (code - bound) | 0;
@@ -37,6 +41,8 @@ export function unpack(packed: Uint8Array, size: number): Uint8Array {
       range <<= 8;
       code = (code << 8) | packed[at++]!;
     }
+    coder[0] = range;
+    coder[1] = code;
     return found;
   };
   const tree = (probabilities: Uint16Array, begin: number, bits: number): number => {
@@ -86,7 +92,8 @@ export function unpack(packed: Uint8Array, size: number): Uint8Array {
     if (slot < 14) return found + reversed(positions, found - slot, bits);
     let direct = 0;
     for (let index = bits - 4; index > 0; index--) {
-      range = (range >>> 1) | 0;
+      let range = (coder[0]! >>> 1) | 0;
+      let code = coder[1]!;
       const one = (code ^ SIGN) >= (range ^ SIGN) ? 1 : 0;
       if (one) code = (code - range) | 0;
       direct = (direct << 1) | one;
@@ -94,6 +101,8 @@ export function unpack(packed: Uint8Array, size: number): Uint8Array {
         range <<= 8;
         code = (code << 8) | packed[at++]!;
       }
+      coder[0] = range;
+      coder[1] = code;
     }
     found += direct << 4;
     return found + reversed(aligned, 0, 4);

@@ -342,6 +342,8 @@ ofPage("all examples run", "tab=system", async (page) => {
 });
 
 ofPage("a worker that dies is started again, and the map comes", "", async (page) => {
+  await settled(page);
+  await mapped(page);
   await page.evaluate(() => {
     const { crew, hand } = globalThis.explorer;
     crew.hands.forEach((it) => it.crash());
