@@ -42,6 +42,8 @@ const LEFT = 54;
 const RIGHT = 10;
 const GAP = 24;
 const BOTTOM = 34;
+/** More marks would hide the curves. */
+const MOST_MARKS = 60;
 
 /** Draws a chart; `cursor` is a time that is marked and told. */
 export function drawChart(
@@ -66,7 +68,7 @@ export function drawChart(
       for (const [from, to, colour] of chart.shades) {
         pen.rectangle(x(from), top, Math.max(0.5, x(to) - x(from)), down, colour);
       }
-      for (const mark of chart.marks)
+      for (const mark of chart.marks.length > MOST_MARKS ? [] : chart.marks)
         pen.line(
           [
             [x(mark), top],

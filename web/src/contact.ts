@@ -11,6 +11,8 @@ import { scene, STEEL, type Pinned, type State } from "./state";
 import type { Answer, Collision, Contact, Law } from "./types";
 
 const INTERVALS = 700;
+/** So many phases of an itinerary are shown. */
+const MOST_PHASES = 60;
 const ANY = { low: 1, high: 2, log: false };
 
 export class ContactView {
@@ -178,12 +180,14 @@ export function pin(state: State): Pinned {
 
 /** The itinerary with one mark for each phase. */
 export function phases(itinerary: string): HTMLElement {
+  const more = itinerary.length - MOST_PHASES;
+  const shown = itinerary.slice(0, MOST_PHASES);
   const names: Record<string, string> = {
     "+": "slip on side +1",
     "-": "slip on side −1",
     o: "stick",
   };
-  const marks = [...itinerary].map((char) =>
+  const marks = [...shown].map((char) =>
     make(
       "i",
       {
@@ -193,8 +197,9 @@ export function phases(itinerary: string): HTMLElement {
       char === "-" ? "−" : char,
     ),
   );
-  const told = [...itinerary].map((char) => names[char]).join(", ");
-  return make("span", { class: "itinerary", role: "img", "aria-label": told }, ...marks);
+  const rest = more > 0 ? ` and ${more} more` : "";
+  const told = [...shown].map((char) => names[char]).join(", ") + rest;
+  return make("span", { class: "itinerary", role: "img", "aria-label": told }, ...marks, rest);
 }
 
 function facts(now: Collision, pinned: Collision | undefined): Node[] {

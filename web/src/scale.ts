@@ -43,17 +43,16 @@ export function step(span: number, count: number): number {
   return factor * power;
 }
 
-function even({ low, high }: Scale, count: number): Tick[] {
+function even(scale: Scale, count: number): Tick[] {
+  const { low, high } = scale;
   const by = step(high - low, count);
   const found: Tick[] = [];
   for (let index = Math.ceil(low / by - 1e-9); index * by <= high + by * 1e-9; index++) {
-    const places = Math.max(3, Math.ceil(Math.log10(Math.abs(index) + 1)) + 1);
-    found.push({
-      value: index * by,
-      label: short(Number((index * by).toPrecision(12)), Math.max(places, digits(low, high, by))),
-    });
+    const value = Number((index * by).toPrecision(12));
+    found.push({ value, label: short(value, digits(low, high, by)) });
   }
-  return found;
+  // One tick alone does not tell a scale.
+  return found.length < 2 && count < 16 ? even(scale, 2 * count) : found;
 }
 
 /** The digits that tell neighbouring ticks apart. */

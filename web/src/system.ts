@@ -45,7 +45,6 @@ interface Run {
 
 const MOST_PANELS = 4;
 const MOST_ROWS = 100;
-const MOST_MARKS = 400;
 
 /** The text of the system of a state. */
 export function textOf(state: State): string {
@@ -360,7 +359,7 @@ export class SystemView {
         ? []
         : [[from, to, mode % 3 === 1 ? colours.slipPositive : colours.slipNegative]],
     );
-    const marks = run.events.slice(0, MOST_MARKS).map((event) => event.time);
+    const marks = run.events.map((event) => event.time);
     return {
       times,
       start: times[0] ?? 0,
