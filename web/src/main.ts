@@ -52,6 +52,7 @@ class Page {
   private readonly hand: Hand;
   readonly crew: Crew;
   private hashTimer: ReturnType<typeof setTimeout> | undefined;
+  private linesTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly show = onceAFrame(() => this.showNow());
 
   constructor(module: Promise<WebAssembly.Module>, from: { state: State; preset: string }) {
@@ -253,7 +254,13 @@ class Page {
     return [...one, ["This window", ofWindow(state)]];
   }
 
+  /** Shows the lines soon: they need not follow each frame of a drag. */
   private showLines(): void {
+    clearTimeout(this.linesTimer);
+    this.linesTimer = setTimeout(() => this.showLinesNow(), 100);
+  }
+
+  private showLinesNow(): void {
     const block = (name: string, words: string) =>
       make(
         "div",

@@ -102,9 +102,12 @@ ofPage("a dragged point shows its contact, and the link follows", "", async (pag
   const [kappa, psi] = await page.evaluate(() => globalThis.explorer.store.state.point);
   assert.ok(kappa > 5 && kappa < 60 && psi > 0.5 && psi < 1.6, `${kappa} ${psi}`);
   await page.waitForFunction((kappa) => location.hash.includes(String(kappa)), kappa);
-  assert.match(
-    await page.textContent("#lines"),
-    new RegExp(`--kappa ${kappa} --psi ${psi} --method auto`),
+  await page.waitForFunction(
+    ([kappa, psi]) =>
+      document
+        .querySelector("#lines")
+        .textContent.includes(`--kappa ${kappa} --psi ${psi} --method auto`),
+    [kappa, psi],
   );
   assert.match(await page.textContent("#facts"), /itinerary/);
 });
@@ -145,6 +148,7 @@ ofPage("wheel, Shift and keys change the window, and undo goes back", "", async 
 });
 
 ofPage("two fingers zoom", "", async (page) => {
+  await mapped(page);
   const low = await page.evaluate(() => {
     const canvas = document.querySelector("#plane");
     const box = canvas.getBoundingClientRect();
@@ -323,7 +327,11 @@ ofPage(
     await page.waitForFunction(
       () => Math.abs((globalThis.explorer.system.run?.events[1]?.time ?? 0) - 2) < 1e-9,
     );
-    assert.match(await page.textContent("#lines"), /stickslip run system.slip --set e=0.5/);
+    await page.waitForFunction(() =>
+      document
+        .querySelector("#lines")
+        .textContent.includes("stickslip run system.slip --set e=0.5"),
+    );
     const { name, bytes } = await downloaded(page, '[data-write="text"]');
     assert.deepEqual([name, String(bytes)], ["system.slip", text.replace("e = 0.5", "e = 0.25")]);
   },
