@@ -11,13 +11,13 @@ use crate::root;
 
 /// The layers of docs/architecture.md from below. A crate may use the crates of all lower layers.
 const LAYERS: [&[&str]; 11] = [
-    &["stickslip-number"],
+    &["stickslip-number", "stickslip-page"],
     &["stickslip-solver"],
     &["stickslip-contact", "stickslip-tracer"],
     &["stickslip-exact", "stickslip-expression"],
     &["stickslip-model"],
     &["stickslip-plane"],
-    &["stickslip-figure"],
+    &["stickslip-explorer", "stickslip-figure"],
     &["stickslip-practice", "stickslip-studies"],
     &["stickslip-files", "stickslip-reproduction"],
     &["stickslip", "stickslip-cli", "stickslip-python"],

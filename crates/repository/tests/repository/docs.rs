@@ -18,7 +18,7 @@ fn files(extension: &str) -> Vec<PathBuf> {
         for entry in fs::read_dir(folder).expect("a folder") {
             let path = entry.expect("an entry").path();
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            let skipped = ["target", "out", "corpus", "artifacts"];
+            let skipped = ["target", "out", "corpus", "artifacts", "node_modules"];
             if path.is_dir() && !name.starts_with('.') && !skipped.contains(&name) {
                 folders.push(path);
             } else if path.extension().is_some_and(|found| found == extension) {

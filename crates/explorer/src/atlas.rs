@@ -1,0 +1,188 @@
+//! Boundaries and regions of a plane, as accurate as a screen shows them.
+
+use serde_json::{Value, json};
+use stickslip_model::Contact;
+use stickslip_plane::Range;
+use stickslip_plane::atlas::BoundaryKind;
+use stickslip_solver::{Margin, Place};
+use stickslip_tracer::{
+    Atlas, AtlasOptions, Point, Serial, Side, SpecialPoint, Stretch, Surveyor, TraceOptions,
+    VerifyOptions, Watch, Window,
+};
+
+use crate::axis::Axis;
+use crate::itinerary;
+use crate::spheres::{Spheres, collide};
+use crate::system::SystemPlane;
+
+/// How long a run takes.
+#[derive(Clone, Copy)]
+enum PerRun {
+    Microseconds,
+    Milliseconds,
+}
+
+impl PerRun {
+    /// The options for a window with this shorter side. The verification is a spot check: it takes
+    /// as long as the trace.
+    fn options(self, shorter: f64) -> AtlasOptions {
+        /// The part of the shorter side by which a curve may be off. A picture needs 1e-4, but
+        /// regions narrower than a curve's error would not be found.
+        const ACCURACY: f64 = 1e-8;
+        let (cells, random_points, near_points, rounds) = match self {
+            Self::Microseconds => (32, 2000, 4, 4),
+            Self::Milliseconds => (12, 300, 2, 2),
+        };
+        let interpolation = (ACCURACY * shorter).clamp(1e-11, 1e-2);
+        let trace =
+            TraceOptions { interpolation, cells, max_curves: 1500, ..TraceOptions::default() };
+        let tolerance = 10.0 * interpolation;
+        let (nearest, farthest) = (10.0 * tolerance, 1e4 * tolerance);
+        let verify = VerifyOptions {
+            random_points,
+            near_points,
+            nearest,
+            farthest,
+            ..VerifyOptions::default()
+        };
+        AtlasOptions { trace, tolerance, verify, rounds }
+    }
+}
+
+/// The least part of an axis' upper end that is traced, where the axis begins at 0.
+const LEAST: f64 = 1e-3;
+
+fn range(axis: &Axis) -> Range {
+    Range { low: axis.low.max(LEAST * axis.high), high: axis.high }
+}
+
+/// The boundaries and regions of collisions.
+///
+/// # Errors
+/// A sentence that says why there are none.
+pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String> {
+    let sides = [range(x), range(y)];
+    let (plane, units) = spheres.plane(sides).map_err(|error| error.to_string())?;
+    plane.sheet().require_wide(plane.names()).map_err(|error| error.to_string())?;
+    let window = plane.window();
+    let any = plane.contact(&window.low).map_err(|error| error.to_string())?;
+    let per_run = if any.obeys_paper() { PerRun::Microseconds } else { PerRun::Milliseconds };
+    let options = per_run.options(window.extent().min());
+    let surveyor = Surveyor { options, executor: Serial, watch: Watch::SILENT };
+    let atlas = surveyor.atlas(&plane.family(), &window).map_err(|error| error.to_string())?;
+    let place = |point: &Point| {
+        let [x, y] = plane.parameters(point);
+        [x / units[0], y / units[1]]
+    };
+    let name = |region: usize| {
+        let sample = &atlas.plane.regions()[region].sample;
+        let found = plane.contact(sample).ok().and_then(|contact| Some(collide(contact).ok()?.0));
+        match found {
+            Some(found) => {
+                (found.itinerary(), found.switches.len(), itinerary::of_collision(&found))
+            }
+            None => ("no collision".to_owned(), 0, 0),
+        }
+    };
+    Ok(document(&atlas, &window, place, |margin| collision_kind(&any, margin), name))
+}
+
+fn collision_kind(any: &Contact, margin: &Margin) -> &'static str {
+    match BoundaryKind::of(any, margin) {
+        BoundaryKind::EndOfContact => "end-of-contact",
+        BoundaryKind::StickGraze => "stick-graze",
+        BoundaryKind::SlipGraze => "slip-graze",
+        BoundaryKind::StartOfContact => "start-of-contact",
+        BoundaryKind::StartOfTail => "start-of-tail",
+    }
+}
+
+/// The boundaries and regions of a system.
+///
+/// # Errors
+/// A sentence that says why there are none.
+pub fn of_system(plane: &SystemPlane, [x, y]: [&Axis; 2]) -> Result<Value, String> {
+    let window = Window { low: Point::new(x.low, y.low), high: Point::new(x.high, y.high) };
+    let options = PerRun::Milliseconds.options(window.extent().min());
+    let surveyor = Surveyor { options, executor: Serial, watch: Watch::SILENT };
+    let family = plane.family();
+    let atlas = surveyor.atlas(family, &window).map_err(|error| error.to_string())?;
+    let name = |region: usize| {
+        let Some(label) = &atlas.plane.regions()[region].label else {
+            let sample = plane.point(atlas.plane.regions()[region].sample.into());
+            return ("no boundary".to_owned(), usize::from(sample.count), sample.code);
+        };
+        let count = label.fired().map_or(0, <[usize]>::len);
+        (itinerary::words(label, family.rules()), count, itinerary::of_label(label))
+    };
+    Ok(document(&atlas, &window, |point| (*point).into(), system_kind, name))
+}
+
+fn system_kind(margin: &Margin) -> &'static str {
+    match margin.place {
+        Place::End => "event-at-end",
+        Place::Start { .. } => "event-at-start",
+        Place::Minimum { .. } | Place::Maximum { .. } => "graze",
+        Place::Exit(_) => "order",
+        Place::Branch(_) => "branch",
+    }
+}
+
+fn special_name(special: SpecialPoint) -> &'static str {
+    match special {
+        SpecialPoint::Crossing => "crossing",
+        SpecialPoint::DoubleGraze => "double graze",
+        SpecialPoint::Cusp => "cusp",
+        SpecialPoint::GrazeAtEnd => "graze at the end",
+        SpecialPoint::SimultaneousEvents => "simultaneous events",
+        SpecialPoint::Tangency => "tangency",
+        SpecialPoint::Other => "other",
+    }
+}
+
+/// An atlas as an object. `name` has the itinerary, the count and the code of a region.
+fn document<Label: Clone + Ord + std::fmt::Debug>(
+    atlas: &Atlas<Label, Margin>,
+    window: &Window,
+    place: impl Fn(&Point) -> [f64; 2],
+    kind: impl Fn(&Margin) -> &'static str,
+    name: impl Fn(usize) -> (String, usize, u32),
+) -> Value {
+    let plane = &atlas.plane;
+    let extent = window.extent();
+    let curves = plane.curves().iter().enumerate().map(|(index, curve)| {
+        let points: Vec<[f64; 2]> = curve.polyline(&extent).iter().map(&place).collect();
+        json!({ "kind": kind(&curve.margin), "points": points, "sides": plane.regions_beside(index) })
+    });
+    let vertices = plane.special_points().into_iter().map(|(vertex, special)| {
+        let point = place(&plane.vertices()[vertex].point);
+        json!({ "name": special_name(special), "point": point })
+    });
+    let stretch = |stretch: &Stretch| match stretch {
+        Stretch::Curve(curve, side) => json!({ "curve": curve, "back": *side == Side::Right }),
+        Stretch::Window(ends) => json!({ "line": ends.each_ref().map(&place) }),
+    };
+    let regions = plane.regions().iter().enumerate().map(|(index, region)| {
+        let (itinerary, count, code) = name(index);
+        let rings: Vec<Vec<Value>> =
+            plane.outlines(index).iter().map(|ring| ring.iter().map(stretch).collect()).collect();
+        json!({
+            "itinerary": itinerary,
+            "count": count,
+            "code": code,
+            "sample": place(&region.sample),
+            "share": region.area / extent.product(),
+            "doubtful": atlas.is_doubtful(index),
+            "rings": rings,
+        })
+    });
+    json!({
+        "boundaries": curves.collect::<Vec<_>>(),
+        "vertices": vertices.collect::<Vec<_>>(),
+        "regions": regions.collect::<Vec<_>>(),
+        "agrees": atlas.agrees(),
+        "objection": atlas.objection(),
+        "low": place(&window.low),
+        "high": place(&window.high),
+    })
+}

@@ -1,0 +1,131 @@
+// The command line and the Python lines that compute what the page shows.
+
+import type { State } from "./state";
+import type { Axis, Collision } from "./types";
+
+/** The least part of an axis' upper end that is traced, where it begins at 0. */
+const LEAST = 1e-3;
+
+export interface Lines {
+  shell: string;
+  python: string;
+}
+
+/** A contact. */
+export function ofContact(state: State, { parameters }: Collision): Lines {
+  const scaled = state.axes === "kappa-psi" || state.axes === "velocities";
+  const { kappa, psi, damping } = parameters;
+  const place = scaled
+    ? [`--kappa ${kappa}`, `--psi ${psi}`]
+    : [`--kappa ${kappa}`, `--ratio ${state.point[1]}`, ...reduction(state)];
+  const shell = ["stickslip collide", ...place, ...options(state, damping), "--method auto"].join(
+    " ",
+  );
+  const words = [`kappa=${kappa}`, `psi=${psi}`, ...keywords(state, damping)].join(", ");
+  return {
+    shell,
+    python: `import stickslip\ncollision = stickslip.collide(${words})\nprint(collision)`,
+  };
+}
+
+/** The boundaries of a window. */
+export function ofWindow(state: State): Lines {
+  if (state.axes === "velocities") {
+    const {
+      radius_m,
+      young_modulus_pa,
+      poisson_ratio,
+      density_kg_per_m3,
+      tangential_stiffness_kg_per_s2,
+      damping_time_s,
+    } = state.bodies;
+    const python = [
+      "import numpy as np",
+      "from stickslip import Bodies, Material, Sphere, Surface, impact",
+      `material = Material(young_modulus_pa=${young_modulus_pa}, poisson_ratio=${poisson_ratio}, density_kg_per_m3=${density_kg_per_m3})`,
+      `surface = Surface(${state.mu}, ${tangential_stiffness_kg_per_s2}, ${damping_time_s})`,
+      `bodies = Bodies(Sphere(${radius_m}, material), Sphere(${radius_m}, material), surface)`,
+      `found = impact(bodies, normal_m_per_s=${state.point[0]}, tangential_m_per_s=${state.point[1]})`,
+      "print(found.eps_t)",
+    ];
+    return { shell: "", python: python.join("\n") };
+  }
+  const factor = state.axes === "axis-ratio" ? 1 / state.alpha : 1;
+  const [kappa, other] = [ends(state.x).map((it) => it * factor), ends(state.y)];
+  const ratio = state.axes !== "kappa-psi";
+  const second = ratio
+    ? [`--ratio ${other.join(":")}`, ...reduction(state)]
+    : [`--psi ${other.join(":")}`];
+  const window = [`--kappa ${kappa.join(":")}`, ...second, ...options(state, state.damping)];
+  const words = [`kappa=(${kappa.join(", ")})`, `${ratio ? "ratio" : "psi"}=(${other.join(", ")})`];
+  if (ratio) words.push(`mu=${state.mu}`, `alpha=${state.alpha}`);
+  words.push(...keywords(state, state.damping));
+  return {
+    shell: `stickslip trace ${window.join(" ")} --out atlas.json --plot atlas.svg`,
+    python: `import stickslip\natlas = stickslip.trace(${words.join(", ")})\nprint(atlas)`,
+  };
+}
+
+/** A system, its run, which starts at a time, and its plane. */
+export function ofSystem(state: State, name: string, start: number): Lines {
+  const file = `${name}.slip`;
+  const given = Object.entries(state.set);
+  const others = given.filter(([key]) => key !== state.across && key !== state.up);
+  const set = (values: [string, number][]) => values.map(([key, value]) => `--set ${key}=${value}`);
+  const end = state.end === null ? [] : [`--end ${state.end}`];
+  const [across, up] = [ends(state.sx, 0), ends(state.sy, 0)];
+  const axes = [`--x ${state.across}=${across.join(":")}`, `--y ${state.up}=${up.join(":")}`];
+  const plane = [...set(others), ...end, `--max-events ${state.most}`];
+  const shell = [
+    ["stickslip run", file, ...set(given), ...end].join(" "),
+    ["stickslip trace", file, ...axes, ...plane, "--out atlas.json --plot atlas.svg"].join(" "),
+  ].join("\n");
+  const values = (of: [string, number][]) =>
+    of.length ? [`parameters={${of.map(([key, value]) => `"${key}": ${value}`).join(", ")}}`] : [];
+  const span = state.end === null ? [] : [`(${start}, ${state.end})`];
+  const until = state.end === null ? [] : [`end=${state.end}`];
+  const family = [
+    "system",
+    `"${state.across}"`,
+    `"${state.up}"`,
+    ...values(others),
+    ...until,
+    `max_switches=${state.most}`,
+  ];
+  const python = [
+    "import stickslip",
+    `system = stickslip.read("${file}")`,
+    `found = system.solve(${[...span, ...values(given)].join(", ")})`,
+    `family = stickslip.HybridFamily.of(${family.join(", ")})`,
+    `atlas = stickslip.trace_family(family, (${across.join(", ")}), (${up.join(", ")}))`,
+  ].join("\n");
+  return { shell, python };
+}
+
+function reduction({ mu, alpha }: State): string[] {
+  return [`--mu ${mu}`, `--alpha ${alpha}`];
+}
+
+function options({ axes, law, tangential }: State, damping: number): string[] {
+  const given = damping > 0 ? [`--damping ${damping}`] : [];
+  if (law === "paper" || axes === "velocities") return given;
+  return [
+    ...given,
+    `--law ${law}`,
+    ...(tangential > 0 ? [`--tangential-damping ${tangential}`] : []),
+  ];
+}
+
+function keywords({ axes, law, tangential }: State, damping: number): string[] {
+  const given = damping > 0 ? [`damping=${damping}`] : [];
+  if (law === "paper" || axes === "velocities") return given;
+  return [
+    ...given,
+    `law="${law}"`,
+    ...(tangential > 0 ? [`tangential_damping=${tangential}`] : []),
+  ];
+}
+
+function ends({ low, high }: Axis, least = LEAST): number[] {
+  return [least > 0 ? Math.max(low, least * high) : low, high];
+}

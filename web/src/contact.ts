@@ -1,0 +1,301 @@
+// The contact at the point: its spheres, its course, its numbers and its switches.
+
+import { described, drawChart, timeAt, type Chart } from "./chart";
+import { chartOf, columns, type Course } from "./course";
+import type { Hand } from "./crew";
+import { byId, fit, make, onceAFrame } from "./dom";
+import { fixed, short } from "./number";
+import { CanvasPen } from "./pen";
+import { Spheres } from "./spheres";
+import { scene, STEEL, type Pinned, type State } from "./state";
+import type { Answer, Collision, Contact, Law } from "./types";
+
+const INTERVALS = 700;
+/** So many phases of an itinerary are shown. */
+const MOST_PHASES = 60;
+const ANY = { low: 1, high: 2, log: false };
+
+export class ContactView {
+  contact: Contact | undefined;
+  course: Course | undefined;
+  chart: Chart | undefined;
+  private pinned: Contact | undefined;
+  private pinnedKey = "";
+  private wanted = "";
+  private latest: State | undefined;
+  private readonly canvas = byId<HTMLCanvasElement>("course");
+  private readonly spheres: Spheres;
+  private cursor: number | undefined;
+  private readonly draw = onceAFrame(() => this.drawNow());
+  /** Milliseconds of the worker for the last contact, and of drawing it. */
+  times = { worker: 0, draw: 0 };
+
+  constructor(
+    private readonly hand: Hand,
+    private readonly laws: () => Law[],
+    private readonly changed: () => void,
+  ) {
+    this.spheres = new Spheres(byId<HTMLCanvasElement>("spheres"), (time) => {
+      this.cursor = time;
+      this.draw();
+    });
+    const move = (event: PointerEvent) => {
+      if (!this.chart) return;
+      const box = this.canvas.getBoundingClientRect();
+      this.cursor = timeAt(this.chart, box.width, event.clientX - box.left);
+      if (!this.spheres.playing) this.spheres.seek(this.cursor);
+      this.draw();
+    };
+    this.canvas.addEventListener("pointermove", move);
+    this.canvas.addEventListener("pointerdown", move);
+    this.canvas.addEventListener("pointerleave", () => {
+      this.cursor = undefined;
+      this.draw();
+    });
+    this.canvas.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (!by || !this.chart) return;
+      const { start, end } = this.chart;
+      this.cursor = Math.max(
+        start,
+        Math.min(end, (this.cursor ?? start) + (by * (end - start)) / 100),
+      );
+      this.spheres.seek(this.cursor);
+      this.draw();
+      event.preventDefault();
+    });
+    new ResizeObserver(() => this.draw()).observe(this.canvas);
+    const play = byId<HTMLButtonElement>("play");
+    play.onclick = () => {
+      this.spheres.toggle();
+      play.textContent = this.spheres.playing ? "Pause" : "Play";
+      play.setAttribute("aria-pressed", String(this.spheres.playing));
+    };
+    byId<HTMLSelectElement>("speed").onchange = (event) => {
+      this.spheres.speed = Number((event.target as HTMLSelectElement).value);
+    };
+  }
+
+  /** Shows the contact of a state, as soon as it is computed. */
+  show(state: State): void {
+    this.latest = state;
+    const key = JSON.stringify([scene(state, ANY, ANY), state.point, state.pinned]);
+    if (key === this.wanted) return;
+    this.wanted = key;
+    if (!this.computing) void this.compute(state, key);
+  }
+
+  private computing = false;
+
+  private async compute(state: State, key: string): Promise<void> {
+    this.computing = true;
+    const ask = { task: "contact" as const, intervals: INTERVALS };
+    const pinnedKey = JSON.stringify(state.pinned);
+    const pinned = state.pinned;
+    if (pinned && pinnedKey !== this.pinnedKey) {
+      const of = { ...ask, scene: scene(pinned, ANY, ANY), x: pinned.point[0], y: pinned.point[1] };
+      const { answer } = await this.hand.do<Answer & Contact>(of, 5000);
+      this.pinned = answer.error ? undefined : answer;
+    }
+    if (!pinned) this.pinned = undefined;
+    this.pinnedKey = pinnedKey;
+    const of = { ...ask, scene: scene(state, ANY, ANY), x: state.point[0], y: state.point[1] };
+    const { answer, ms } = await this.hand.do<Answer & Contact>(of, 5000);
+    const begun = performance.now();
+    if (answer.error) this.refuse(answer.error);
+    else this.take(state, answer);
+    this.times = { worker: ms, draw: performance.now() - begun };
+    this.computing = false;
+    if (this.wanted !== key) this.next();
+  }
+
+  /** Computes what was wanted while another contact was computed. */
+  private next(): void {
+    const state = this.latest;
+    if (state) void this.compute(state, this.wanted);
+  }
+
+  private refuse(error: string): void {
+    this.contact = this.course = this.chart = undefined;
+    byId("facts").replaceChildren(make("p", { class: "error", role: "alert" }, error));
+    byId("switches").replaceChildren();
+    this.draw();
+    this.changed();
+  }
+
+  private take(state: State, contact: Contact): void {
+    this.contact = contact;
+    this.course = columns(contact);
+    const law = this.law(state);
+    const factor = (state.mu * state.mu) / state.alpha;
+    const other = state.pinned;
+    const pinned =
+      other && this.pinned
+        ? {
+            contact: this.pinned,
+            law: this.law(other),
+            factor: (other.mu * other.mu) / other.alpha,
+          }
+        : undefined;
+    this.chart = chartOf(contact, { law, factor, ...(pinned ? { pinned } : {}) });
+    this.canvas.setAttribute("aria-label", `Course of the contact. ${described(this.chart)}`);
+    this.spheres.show(contact, this.course, state.mu, state.alpha);
+    byId("facts").replaceChildren(...facts(contact.document, this.pinned?.document));
+    byId("switches").replaceChildren(switchTable(contact.document));
+    this.drawNow();
+    this.changed();
+  }
+
+  private law(of: State | Pinned): Law | undefined {
+    return this.laws().find((law) => law.name === (of.axes === "velocities" ? "paper" : of.law));
+  }
+
+  redraw(): void {
+    const state = this.latest;
+    if (this.contact && state) this.take(state, this.contact);
+    this.spheres.draw();
+  }
+
+  private drawNow(): void {
+    if (this.canvas.clientWidth === 0) return;
+    const [context, width, height] = fit(this.canvas);
+    if (this.chart) drawChart(new CanvasPen(context), this.chart, width, height, this.cursor);
+  }
+}
+
+/** The part of a state that makes a contact. */
+export function pin(state: State): Pinned {
+  const { axes, point, law, damping, tangential, mu, alpha, bodies } = state;
+  return {
+    axes,
+    point,
+    law,
+    damping,
+    tangential,
+    mu,
+    alpha,
+    bodies: axes === "velocities" ? bodies : STEEL,
+  };
+}
+
+/** The itinerary with one mark for each phase. */
+export function phases(itinerary: string): HTMLElement {
+  const more = itinerary.length - MOST_PHASES;
+  const shown = itinerary.slice(0, MOST_PHASES);
+  const names: Record<string, string> = {
+    "+": "slip on side +1",
+    "-": "slip on side −1",
+    o: "stick",
+  };
+  const marks = [...shown].map((char) =>
+    make(
+      "i",
+      {
+        class: char === "o" ? "stick" : char === "+" ? "positive" : "negative",
+        title: names[char] ?? "",
+      },
+      char === "-" ? "−" : char,
+    ),
+  );
+  const rest = more > 0 ? ` and ${more} more` : "";
+  const told = [...shown].map((char) => names[char]).join(", ") + rest;
+  return make("span", { class: "itinerary", role: "img", "aria-label": told }, ...marks, rest);
+}
+
+function facts(now: Collision, pinned: Collision | undefined): Node[] {
+  const error = (it: Collision) => {
+    if (!it.estimate) return `tolerance 4·10⁻¹³ of each step`;
+    return `${short(it.estimate.eps_t_error, 2)}${it.estimate.certain ? "" : ", itinerary not certain"}`;
+  };
+  const rows: [string, (it: Collision) => Node | string][] = [
+    ["itinerary", (it) => phases(it.itinerary)],
+    ["switches, reversals", (it) => `${it.switch_count}, ${it.reversals}`],
+    ["εₜ", (it) => fixed(it.eps_t, 10)],
+    ["εₙ", (it) => fixed(it.eps_n, 10)],
+    ["contact time", (it) => fixed(it.contact_time, 9)],
+    ["energy lost", (it) => `${fixed(100 * it.energy_lost, 3)} %`],
+    ["error of εₜ", error],
+    [
+      "distance from another itinerary",
+      (it) => (it.estimate ? `${fixed(100 * it.estimate.distance, 3)} % of ψ` : "—"),
+    ],
+    ["κ, ψ", (it) => `${short(it.parameters.kappa, 7)}, ${short(it.parameters.psi, 7)}`],
+    ["damping", (it) => short(it.parameters.damping, 6)],
+  ];
+  if (now.units) {
+    const { time_s, length_m, force_n } = now.units;
+    rows.push([
+      "units of time, length, force",
+      (it) =>
+        it === now ? `${short(time_s, 4)} s, ${short(length_m, 4)} m, ${short(force_n, 4)} N` : "",
+    ]);
+  }
+  const head = pinned
+    ? [
+        make(
+          "tr",
+          {},
+          make("td"),
+          make("th", { scope: "col" }, "point"),
+          make("th", { scope: "col", class: "pinned" }, "pinned"),
+        ),
+      ]
+    : [];
+  const body = rows.map(([name, of]) =>
+    make(
+      "tr",
+      {},
+      make("th", { scope: "row" }, name),
+      make("td", {}, of(now)),
+      pinned ? make("td", { class: "pinned" }, of(pinned)) : undefined,
+    ),
+  );
+  const summary = `${now.switch_count} switches, εₜ ${fixed(now.eps_t, 4)}`;
+  return [
+    make(
+      "table",
+      { class: "facts", "aria-label": `Results: ${summary}` },
+      make("tbody", {}, ...head, ...body),
+    ),
+  ];
+}
+
+function switchTable({
+  switches,
+  start_margin,
+}: Collision & { start_margin?: number }): HTMLElement {
+  if (!switches.length)
+    return make(
+      "p",
+      { class: "hint" },
+      "No switch: the contact is sliding from its beginning to its end.",
+    );
+  const header = ["", "time", "to", "side", "spring y", "velocity w"].map((name) =>
+    make("th", { scope: "col" }, name),
+  );
+  const rows = switches.map((it, index) =>
+    make(
+      "tr",
+      {},
+      ...[
+        String(index + 1),
+        fixed(it.time, 9),
+        it.to,
+        it.side > 0 ? "+1" : "−1",
+        short(it.spring, 9),
+        short(it.velocity, 9),
+      ].map((text) => make("td", {}, text)),
+    ),
+  );
+  const note =
+    start_margin === undefined
+      ? undefined
+      : make("caption", {}, `margin at the start ${short(start_margin, 4)}`);
+  return make(
+    "table",
+    { class: "switches" },
+    note,
+    make("thead", {}, make("tr", {}, ...header)),
+    make("tbody", {}, ...rows),
+  );
+}

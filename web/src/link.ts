@@ -1,0 +1,73 @@
+// Links: the fragment of an address, with what differs from a preset.
+
+import { PRESETS, presetOf } from "./presets";
+import { DEFAULT, type State } from "./state";
+
+type Json = unknown;
+
+/** The fragment of a state. */
+export function encoded(state: State, preset: string): string {
+  const base = presetOf(preset).state;
+  const query = new URLSearchParams();
+  if (preset !== PRESETS[0]?.id) query.set("preset", preset);
+  for (const key of Object.keys(DEFAULT) as (keyof State)[]) {
+    const [one, other] = [JSON.stringify(state[key]), JSON.stringify(base[key])];
+    if (one !== other) query.set(key, typeof state[key] === "string" ? String(state[key]) : one);
+  }
+  return query.toString();
+}
+
+/** The state of a fragment. What is not understood is left out. */
+export function decoded(fragment: string): { state: State; preset: string } {
+  const query = new URLSearchParams(fragment.replace(/^#/, ""));
+  const { id, state } = presetOf(query.get("preset"));
+  const found: Record<string, Json> = { ...state };
+  for (const key of Object.keys(DEFAULT) as (keyof State)[]) {
+    const text = query.get(key);
+    if (text === null) continue;
+    const value = read(key, text);
+    if (value !== undefined) found[key] = value;
+  }
+  return { state: found as unknown as State, preset: id };
+}
+
+function read(key: keyof State, text: string): Json {
+  const model: Json = DEFAULT[key];
+  if (typeof model === "string" || key === "text") return text;
+  try {
+    const value: Json = JSON.parse(text);
+    return fits(value, model, key) ? value : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
+/** Whether a value has the form of the usual one. */
+function fits(value: Json, model: Json, key: keyof State): boolean {
+  if (key === "set") return isRecord(value) && Object.values(value).every(isNumber);
+  if (key === "end") return value === null || isNumber(value);
+  if (key === "pinned")
+    return (
+      value === null || (isRecord(value) && same(value, { ...DEFAULT, point: [1, 1] }, PINNED))
+    );
+  if (Array.isArray(model))
+    return Array.isArray(value) && value.length === model.length && value.every(isNumber);
+  if (isRecord(model)) return isRecord(value) && same(value, model, Object.keys(model));
+  return typeof value === typeof model && (typeof value !== "number" || isNumber(value));
+}
+
+const PINNED = ["axes", "point", "law", "damping", "tangential", "mu", "alpha", "bodies"];
+
+function same(value: Record<string, Json>, model: object, keys: string[]): boolean {
+  const form = (it: Json) => (Array.isArray(it) ? "array" : typeof it);
+  const own = model as Record<string, Json>;
+  return keys.every((key) => form(value[key]) === form(own[key]));
+}
+
+function isRecord(value: Json): value is Record<string, Json> {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+function isNumber(value: Json): value is number {
+  return typeof value === "number" && Number.isFinite(value);
+}

@@ -1,0 +1,483 @@
+// The plane: a map as colours, with axes, boundaries, regions, and a point that one drags.
+
+import { onceAFrame, fit } from "./dom";
+import type { Crew, Hand } from "./crew";
+import { listen } from "./gestures";
+import { Mapping } from "./mapping";
+import { rounded, short } from "./number";
+import { CanvasPen, type Path, type Pen } from "./pen";
+import { words, type Shown } from "./quantities";
+import { part, stretched, ticks, value } from "./scale";
+import { theme } from "./theme";
+import type { Answer, Atlas, Axis, Region, SceneRequest } from "./types";
+
+export interface AxisName {
+  symbol: string;
+  name: string;
+  unit: string;
+}
+
+/** A letter, a curve or a mark that the page adds. */
+export interface Mark {
+  at: [number, number];
+  name: string;
+}
+
+/** What a plane shows. */
+export interface PlaneModel {
+  scene: SceneRequest;
+  names: [AxisName, AxisName];
+  shown: Shown;
+  point: [number, number];
+  pinned: [number, number] | undefined;
+  boundaries: boolean;
+  /** Whether a point takes microseconds. */
+  fast: boolean;
+  marks: Mark[];
+  /** A curve that is dashed, such as a closed form. */
+  curve: [number, number][];
+  /** Values of the horizontal axis that are marked below it. */
+  notches: Mark[];
+  /** The least value that an axis may have. */
+  least: number;
+}
+
+export interface PlaneEvents {
+  point(point: [number, number]): void;
+  window(x: Axis, y: Axis): void;
+  /** The region and the value under the pointer, in words. */
+  told(words: string): void;
+  /** How far map and boundaries are. */
+  status(words: string): void;
+}
+
+/** Room around the map, in pixels. */
+const LEFT = 58;
+const RIGHT = 14;
+const TOP = 12;
+const BOTTOM = 46;
+
+const DASHES: Record<string, number[]> = {
+  "stick-graze": [6, 4],
+  graze: [6, 4],
+  "slip-graze": [2, 3],
+  order: [2, 3],
+  "start-of-contact": [8, 3, 2, 3],
+  "start-of-tail": [2, 5],
+  branch: [8, 3, 2, 3],
+};
+
+export class Plane {
+  readonly mapping: Mapping;
+  atlas: Atlas | undefined;
+  private atlasKey = "";
+  private atlasNote = "";
+  private model: PlaneModel | undefined;
+  private hovered: [number, number] | undefined;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private paths: { key: string; regions: Path2D[] } = { key: "", regions: [] };
+  private readonly draw = onceAFrame(() => this.drawNow());
+  private readonly canvas: HTMLCanvasElement;
+  private computed = "";
+
+  constructor(
+    canvas: HTMLCanvasElement,
+    crew: Crew,
+    private readonly tracer: Hand,
+    private readonly events: PlaneEvents,
+  ) {
+    this.canvas = canvas;
+    this.mapping = new Mapping(crew, () => {
+      this.draw();
+      this.report();
+    });
+    listen(canvas, {
+      grab: (x, y) => this.grab(x, y),
+      point: (x, y) => this.events.point(this.valuesAt(x, y)),
+      move: (dx, dy, zoom, x, y) => this.move(dx, dy, zoom, x, y),
+      hover: (place) => {
+        this.hovered = place;
+        this.draw();
+        this.events.told(place ? this.tellAt(...place) : "");
+      },
+      step: (dx, dy, fine) => this.step(dx, dy, fine),
+    });
+    new ResizeObserver(() => {
+      if (this.model) this.show(this.model);
+    }).observe(canvas);
+  }
+
+  /** The size of the map in pixels. */
+  private get size(): [number, number] {
+    const { clientWidth, clientHeight } = this.canvas;
+    return [Math.max(40, clientWidth - LEFT - RIGHT), Math.max(40, clientHeight - TOP - BOTTOM)];
+  }
+
+  /** Shows a model; computes what is new in it. */
+  show(model: PlaneModel): void {
+    const before = this.model;
+    this.model = model;
+    if (before && subject(model.scene) !== subject(before.scene)) this.mapping.forget();
+    if (model.shown !== before?.shown) this.mapping.show(model.shown);
+    const [width, height] = this.size.map(Math.round) as [number, number];
+    const key = JSON.stringify([model.scene, width, height]);
+    if (key !== this.computed && this.canvas.clientWidth > 0) {
+      this.computed = key;
+      this.mapping.compute(model.scene, width, height, model.fast ? [6, 1] : [16, 5, 2]);
+    }
+    this.wantAtlas();
+    this.outline();
+    this.draw();
+  }
+
+  /** Until boundaries are traced, the map shows where itineraries change. */
+  private outline(): void {
+    this.mapping.outline(this.model?.boundaries === true && !this.atlas);
+  }
+
+  private wantAtlas(): void {
+    const { model } = this;
+    if (!model) return;
+    const key = JSON.stringify(model.scene);
+    if (!model.boundaries || key === this.atlasKey) return;
+    if (sceneWithoutWindow(key) !== sceneWithoutWindow(this.atlasKey)) this.atlas = undefined;
+    this.atlasKey = key;
+    if (this.tracer.busy) this.tracer.restart();
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.trace(key, model.scene), model.fast ? 60 : 300);
+    this.atlasNote = "tracing boundaries …";
+    this.report();
+  }
+
+  private async trace(key: string, scene: SceneRequest): Promise<void> {
+    const { answer, ms } = await this.tracer.do<Answer & Atlas>(
+      { task: "ask", scene, request: { do: "atlas" } },
+      300_000,
+    );
+    if (key !== this.atlasKey) return;
+    if (answer.error) {
+      this.atlas = undefined;
+      this.atlasNote = answer.error === "cancelled" ? "" : `no boundaries: ${answer.error}`;
+    } else {
+      this.atlas = answer;
+      const doubts = answer.regions.filter((region) => region.doubtful).length;
+      const doubt = doubts ? `, ${doubts} in doubt` : "";
+      const { length } = answer.regions;
+      this.atlasNote = `${length} ${length === 1 ? "region" : "regions"}${doubt}, ${answer.boundaries.length} boundaries traced in ${Math.round(ms)} ms`;
+    }
+    this.outline();
+    this.report();
+    this.draw();
+  }
+
+  private report(): void {
+    const { model, mapping } = this;
+    const [width, height] = mapping.data.size;
+    const map = mapping.ready
+      ? `map ${width} × ${height} in ${Math.round(mapping.took)} ms`
+      : "computing the map …";
+    this.events.status(model?.boundaries ? `${map}; ${this.atlasNote}` : map);
+  }
+
+  private valuesAt(x: number, y: number): [number, number] {
+    const { model } = this;
+    if (!model) return [1, 1];
+    const [width, height] = this.size;
+    const inside = (it: number) => Math.max(0.0005, Math.min(0.9995, it));
+    return [
+      rounded(value(model.scene.x, inside((x - LEFT) / width))),
+      rounded(value(model.scene.y, inside(1 - (y - TOP) / height))),
+    ];
+  }
+
+  private toPixels([x, y]: [number, number]): [number, number] {
+    const { model } = this;
+    if (!model) return [0, 0];
+    const [width, height] = this.size;
+    return [LEFT + part(model.scene.x, x) * width, TOP + (1 - part(model.scene.y, y)) * height];
+  }
+
+  private grab(x: number, y: number): "point" | "window" {
+    const [width, height] = this.size;
+    const inside = x >= LEFT && x <= LEFT + width && y >= TOP && y <= TOP + height;
+    return inside ? "point" : "window";
+  }
+
+  private move(dx: number, dy: number, zoom: number, x: number, y: number): void {
+    const { model } = this;
+    if (!model) return;
+    const [width, height] = this.size;
+    const about = [(x - LEFT) / width, 1 - (y - TOP) / height] as const;
+    const by = [dx / width, -dy / height] as const;
+    // Over an axis, the window is zoomed along this axis alone.
+    const along = [
+      x < LEFT && zoom !== 1 ? 1 : zoom,
+      y > TOP + height && zoom !== 1 ? 1 : zoom,
+    ] as const;
+    const moved = [model.scene.x, model.scene.y].map((axis, index) => {
+      const [at, shift, factor] = [
+        about[index as 0 | 1],
+        by[index as 0 | 1],
+        along[index as 0 | 1],
+      ];
+      const from = at - at / factor - shift / factor;
+      return this.allowed(stretched(axis, from, from + 1 / factor), axis);
+    }) as [Axis, Axis];
+    this.events.window(...moved);
+  }
+
+  /** A window within what is possible, with ends that are no longer than they have to be. */
+  private allowed(axis: Axis, before: Axis): Axis {
+    const least = axis.log
+      ? Math.max(1e-6, this.model?.least ?? 1e-6)
+      : (this.model?.least ?? -Infinity);
+    const span = axis.log
+      ? Math.log(axis.high / axis.low)
+      : (axis.high - axis.low) / Math.max(1e-300, Math.abs(axis.high));
+    if (!(span > 2e-6) || !(axis.high < 1e9) || !Number.isFinite(axis.low)) return before;
+    if (axis.log && span > 25) return before;
+    const digits = Math.max(4, Math.min(12, 4 - Math.floor(Math.log10(Math.min(1, span)))));
+    const low = rounded(Math.max(least, axis.low), digits);
+    const high = rounded(axis.high, digits);
+    return low < high ? { ...axis, low, high } : before;
+  }
+
+  private step(dx: number, dy: number, fine: boolean): void {
+    const { model } = this;
+    if (!model) return;
+    const by = fine ? 0.001 : 0.01;
+    const at = [part(model.scene.x, model.point[0]), part(model.scene.y, model.point[1])] as const;
+    const clamped = (it: number) => Math.max(0.0005, Math.min(0.9995, it));
+    this.events.point([
+      rounded(value(model.scene.x, clamped(at[0] + dx * by))),
+      rounded(value(model.scene.y, clamped(at[1] + dy * by))),
+    ]);
+  }
+
+  /** The region at a place in pixels. */
+  private regionAt(x: number, y: number): Region | undefined {
+    const { atlas } = this;
+    if (!atlas || !this.model?.boundaries) return undefined;
+    const paths = this.regionPaths(atlas);
+    const context = this.canvas.getContext("2d");
+    // Paths are scaled with the canvas, and the place is not.
+    const ratio = window.devicePixelRatio || 1;
+    const index = paths.findIndex((path) =>
+      context?.isPointInPath(path, x * ratio, y * ratio, "evenodd"),
+    );
+    return atlas.regions[index];
+  }
+
+  private regionPaths(atlas: Atlas): Path2D[] {
+    const key = `${this.computed}${this.atlasKey}`;
+    if (this.paths.key === key && this.paths.regions.length === atlas.regions.length)
+      return this.paths.regions;
+    const regions = atlas.regions.map((region) => {
+      const path = new Path2D();
+      for (const ring of region.rings) {
+        this.ring(atlas, ring).forEach(([x, y], index) =>
+          index ? path.lineTo(x, y) : path.moveTo(x, y),
+        );
+        path.closePath();
+      }
+      return path;
+    });
+    this.paths = { key, regions };
+    return regions;
+  }
+
+  private ring(atlas: Atlas, ring: Region["rings"][number]): Path {
+    return ring.flatMap((stretch) => {
+      const points =
+        "line" in stretch ? stretch.line : (atlas.boundaries[stretch.curve]?.points ?? []);
+      const ordered = "back" in stretch && stretch.back ? [...points].reverse() : points;
+      return ordered.map((point) => this.toPixels(point));
+    });
+  }
+
+  /** What is at a place, in words. */
+  private tellAt(x: number, y: number): string {
+    const { model, mapping } = this;
+    if (!model || this.grab(x, y) === "window") return "";
+    const [across, up] = this.valuesAt(x, y);
+    const [one, other] = model.names;
+    const place = `${one.symbol} ${short(across)}, ${other.symbol} ${short(up)}`;
+    const region = this.regionAt(x, y);
+    const [width, height] = this.size;
+    const index = mapping.at((x - LEFT) / width, (y - TOP) / height);
+    const { map } = mapping.data;
+    const own =
+      index !== undefined && mapping.legend ? words(mapping.legend, map, index) : undefined;
+    const told =
+      own !== undefined && model.shown.kind !== "code" ? `${model.shown.name} ${own}` : undefined;
+    const itinerary = region
+      ? region.itinerary + (region.doubtful ? " (in doubt)" : "")
+      : undefined;
+    return [place, itinerary, told].filter((it) => it !== undefined).join(" · ");
+  }
+
+  private drawNow(): void {
+    const { model, canvas } = this;
+    if (!model || canvas.clientWidth === 0) return;
+    const [context, width, height] = fit(canvas);
+    this.drawWith(new CanvasPen(context), width, height, true);
+  }
+
+  /** Draws the plane; for files without what is under the pointer. */
+  drawWith(pen: Pen, width: number, height: number, interactive: boolean): void {
+    const { model, mapping, atlas } = this;
+    if (!model) return;
+    const colours = theme();
+    const [across, down] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
+    pen.within(LEFT, TOP, across, down, () => {
+      pen.rectangle(LEFT, TOP, across, down, colours.rule);
+      const place = mapping.place(model.scene.x, model.scene.y);
+      if (place) {
+        const [left, top, wide, high] = place;
+        pen.picture(
+          mapping.canvas,
+          LEFT + left * across,
+          TOP + top * down,
+          wide * across,
+          high * down,
+        );
+      }
+      if (model.boundaries && atlas) this.drawBoundaries(pen, atlas);
+      if (interactive && this.hovered && atlas) this.drawRegion(pen, atlas, this.hovered);
+      if (model.curve.length) {
+        const path = model.curve.map((point) => this.toPixels(point));
+        pen.line(path, { colour: "#fff", width: 3.5 });
+        pen.line(path, { colour: "#000", width: 1.5, dash: [10, 5] });
+      }
+      this.drawPoints(pen, model);
+    });
+    this.drawAxes(pen, model, across, down);
+  }
+
+  private drawBoundaries(pen: Pen, atlas: Atlas): void {
+    const many = atlas.boundaries.length > 150;
+    for (const { kind, points } of atlas.boundaries) {
+      const path = points.map((point) => this.toPixels(point));
+      pen.line(path, {
+        colour: "#101010",
+        width: many ? 0.7 : 1.15,
+        dash: many ? [] : (DASHES[kind] ?? []),
+      });
+    }
+    if (many) return;
+    for (const { point } of atlas.vertices) {
+      pen.disc(...this.toPixels(point), 2.6, "#fff", { colour: "#101010", width: 1.2 });
+    }
+  }
+
+  private drawRegion(pen: Pen, atlas: Atlas, place: [number, number]): void {
+    const region = this.regionAt(...place);
+    if (!region) return;
+    for (const ring of region.rings) {
+      const path = this.ring(atlas, ring);
+      const closed: Path = [...path, path[0] ?? [0, 0]];
+      pen.line(closed, { colour: "#fff", width: 5 });
+      pen.line(closed, { colour: "#111", width: 2.2 });
+    }
+  }
+
+  private drawPoints(pen: Pen, model: PlaneModel): void {
+    const halo = "#fff";
+    for (const { at, name } of model.marks) {
+      const [x, y] = this.toPixels(at);
+      pen.disc(x, y, 3, "#111", { colour: "#fff", width: 1 });
+      pen.text(name, x - 8, y + 4, { colour: "#111", size: 13, bold: true, align: "right", halo });
+    }
+    if (model.pinned) {
+      const [x, y] = this.toPixels(model.pinned);
+      pen.disc(x, y, 6, "#fff", { colour: "#111", width: 1.5 });
+      pen.disc(x, y, 3, theme().pinned);
+    }
+    const [x, y] = this.toPixels(model.point);
+    pen.disc(x, y, 9, "rgba(255,255,255,0.35)", { colour: "#fff", width: 3.5 });
+    pen.disc(x, y, 9, "rgba(0,0,0,0)", { colour: "#111", width: 1.6 });
+    pen.disc(x, y, 2.2, "#111");
+  }
+
+  private drawAxes(pen: Pen, model: PlaneModel, across: number, down: number): void {
+    const { ink, faint } = theme();
+    const [horizontal, vertical] = model.names;
+    const bottom = TOP + down;
+    const frame: Path = [
+      [LEFT, TOP],
+      [LEFT + across, TOP],
+      [LEFT + across, bottom],
+      [LEFT, bottom],
+      [LEFT, TOP],
+    ];
+    pen.line(frame, { colour: faint, width: 1 });
+    let free = -Infinity;
+    for (const { value, label } of ticks(model.scene.x, across / 75)) {
+      const x = LEFT + part(model.scene.x, value) * across;
+      pen.line(
+        [
+          [x, bottom],
+          [x, bottom + (label ? 6 : 3)],
+        ],
+        { colour: ink },
+      );
+      const half = label.length * 3.6;
+      if (!label || x - half < free || x + half > LEFT + across + RIGHT) continue;
+      free = x + half + 6;
+      pen.text(label, x, bottom + 19, { colour: ink, align: "center" });
+    }
+    for (const { value, label } of ticks(model.scene.y, down / 55)) {
+      const y = TOP + (1 - part(model.scene.y, value)) * down;
+      pen.line(
+        [
+          [LEFT, y],
+          [LEFT - (label ? 6 : 3), y],
+        ],
+        { colour: ink },
+      );
+      if (label) pen.text(label, LEFT - 9, y + 4, { colour: ink, align: "right" });
+    }
+    for (const { at, name } of model.notches) {
+      const x = LEFT + part(model.scene.x, at[0]) * across;
+      if (x < LEFT || x > LEFT + across) continue;
+      pen.area(
+        [
+          [x, bottom - 1],
+          [x - 4, bottom - 8],
+          [x + 4, bottom - 8],
+        ],
+        "#111",
+        { colour: "#fff", width: 1 },
+      );
+      if (name)
+        pen.text(name, x, bottom - 11, { colour: "#111", size: 11, align: "center", halo: "#fff" });
+    }
+    const caption = ({ symbol, name, unit }: AxisName) =>
+      [name === symbol ? "" : name, symbol, unit ? `in ${unit}` : ""].filter(Boolean).join(" ");
+    pen.text(caption(horizontal), LEFT + across / 2, bottom + 38, {
+      colour: ink,
+      align: "center",
+      size: 13,
+    });
+    pen.text(caption(vertical), 14, TOP + down / 2, {
+      colour: ink,
+      align: "center",
+      size: 13,
+      up: true,
+    });
+  }
+
+  /** The size of the canvas, for files. */
+  get extent(): [number, number] {
+    return [this.canvas.clientWidth, this.canvas.clientHeight];
+  }
+}
+
+/** What the axes of a scene are: a picture of another subject is not shown in the meantime. */
+function subject({ kind, axes, across, up, text }: SceneRequest): string {
+  return JSON.stringify([kind, axes, across, up, text]);
+}
+
+function sceneWithoutWindow(key: string): string {
+  return key.replace(/"[xy]":\{[^}]*\},?/g, "");
+}

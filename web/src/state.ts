@@ -1,0 +1,154 @@
+// What the page shows: one object, whose every field can be in a link.
+
+import type { SceneRequest, Axis } from "./types";
+
+export type Tab = "spheres" | "system";
+export type Axes = "kappa-psi" | "kappa-ratio" | "axis-ratio" | "velocities";
+export type Quantity =
+  "eps_t" | "count" | "time" | "lost" | "itinerary" | "v0" | "v1" | "v2" | "v3";
+
+export interface Bodies {
+  radius_m: number;
+  young_modulus_pa: number;
+  poisson_ratio: number;
+  density_kg_per_m3: number;
+  tangential_stiffness_kg_per_s2: number;
+  damping_time_s: number;
+}
+
+export interface State {
+  tab: Tab;
+  axes: Axes;
+  x: Axis;
+  y: Axis;
+  point: [number, number];
+  /** A second contact, to compare with: its plane and its point. */
+  pinned: Pinned | null;
+  quantity: Quantity;
+  law: string;
+  damping: number;
+  tangential: number;
+  mu: number;
+  alpha: number;
+  bodies: Bodies;
+  boundaries: boolean;
+  points: boolean;
+  limits: boolean;
+  /** The system in the editor: the name of an example, or another text. */
+  example: string;
+  text: string | null;
+  set: Record<string, number>;
+  across: string;
+  up: string;
+  sx: Axis;
+  sy: Axis;
+  colour: Quantity;
+  most: number;
+  end: number | null;
+}
+
+export interface Pinned {
+  axes: Axes;
+  point: [number, number];
+  law: string;
+  damping: number;
+  tangential: number;
+  mu: number;
+  alpha: number;
+  bodies: Bodies;
+}
+
+/** The steel spheres of the paper's Figure 2, whose Y is in GPa. */
+export const STEEL: Bodies = {
+  radius_m: 0.02,
+  young_modulus_pa: 210e9,
+  poisson_ratio: 0.3,
+  density_kg_per_m3: 7850,
+  tangential_stiffness_kg_per_s2: 1e9,
+  damping_time_s: 0,
+};
+
+export const DEFAULT: State = {
+  tab: "spheres",
+  axes: "kappa-psi",
+  x: { low: 1, high: 100, log: true },
+  y: { low: 0.02, high: 2.2, log: false },
+  point: [63, 0.5],
+  pinned: null,
+  quantity: "eps_t",
+  law: "paper",
+  damping: 0,
+  tangential: 0,
+  mu: 0.4,
+  alpha: 2 / 7,
+  bodies: STEEL,
+  boundaries: true,
+  points: false,
+  limits: false,
+  example: "belt",
+  text: null,
+  set: {},
+  across: "belt",
+  up: "kinetic",
+  sx: { low: 0.05, high: 0.8, log: false },
+  sy: { low: 0, high: 0.7, log: false },
+  colour: "count",
+  most: 12,
+  end: null,
+};
+
+type Scenery = Pick<State, "axes" | "law" | "damping" | "tangential" | "mu" | "alpha" | "bodies">;
+
+/** The plane of collisions of a state, or of a pinned contact in any window. */
+export function scene(of: Scenery, x: Axis, y: Axis): SceneRequest {
+  const { axes, law, damping, tangential, mu, alpha, bodies } = of;
+  const common = { kind: "spheres" as const, x, y, axes, mu, alpha };
+  return axes === "velocities"
+    ? { ...common, law: "paper", damping: 0, tangential_damping: 0, bodies }
+    : { ...common, law, damping, tangential_damping: tangential };
+}
+
+/** Listens to changes, and remembers states to go back to. */
+export class Store {
+  private listeners: ((state: State, before: State) => void)[] = [];
+  private past: State[] = [];
+  private future: State[] = [];
+  private changed = 0;
+
+  constructor(public state: State) {}
+
+  listen(listener: (state: State, before: State) => void): void {
+    this.listeners.push(listener);
+  }
+
+  /** Changes some fields. Changes within half a second are one step of undoing. */
+  change(patch: Partial<State>): void {
+    const now = performance.now();
+    if (now - this.changed > 500) this.past = [...this.past.slice(-100), this.state];
+    this.changed = now;
+    this.future = [];
+    this.become({ ...this.state, ...patch });
+  }
+
+  undo(): void {
+    this.step(this.past, this.future);
+  }
+
+  redo(): void {
+    this.step(this.future, this.past);
+  }
+
+  private step(from: State[], to: State[]): void {
+    const state = from.pop();
+    if (!state) return;
+    to.push(this.state);
+    this.changed = 0;
+    this.become(state);
+  }
+
+  private become(state: State): void {
+    const before = this.state;
+    this.state = state;
+    this.listeners.forEach((listener) => listener(state, before));
+  }
+}

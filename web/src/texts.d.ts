@@ -1,0 +1,4 @@
+declare module "*.slip" {
+  const text: string;
+  export default text;
+}

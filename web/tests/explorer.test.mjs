@@ -1,0 +1,482 @@
+// The page in a browser: its numbers against those of the native program, and all that one can do.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { downloaded, launch, mapped, settled, traced } from "./browser.mjs";
+
+const data = (name) => JSON.parse(readFileSync(new URL(`data/${name}`, import.meta.url), "utf8"));
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+/** A test of one page, which must say nothing on the console. */
+function ofPage(name, fragment, act, options) {
+  test(name, async () => {
+    const { page, said, close } = await browser.open(fragment, options);
+    await act(page);
+    assert.deepEqual(said, []);
+    await close();
+  });
+}
+
+ofPage("500 contacts are those of the native program", "", async (page) => {
+  const contacts = data("contacts.json");
+  assert.equal(contacts.length, 500);
+  const found = await page.evaluate(async (contacts) => {
+    const axis = { low: 1, high: 2, log: false };
+    const answers = [];
+    for (const { kappa, psi, law, damping } of contacts) {
+      const scene = {
+        kind: "spheres",
+        axes: "kappa-psi",
+        x: axis,
+        y: axis,
+        law,
+        damping,
+        tangential_damping: 0,
+        mu: 0.4,
+        alpha: 2 / 7,
+      };
+      const { answer } = await globalThis.explorer.hand.do({
+        task: "contact",
+        scene,
+        x: kappa,
+        y: psi,
+        intervals: 10,
+      });
+      answers.push(answer.document ?? answer);
+    }
+    return answers;
+  }, contacts);
+  contacts.forEach((native, index) => {
+    const own = found[index];
+    const what = JSON.stringify({ native, own });
+    assert.equal(own.itinerary, native.itinerary, what);
+    const most = native.law === "paper" ? 1e-12 : 1e-11;
+    for (const key of ["eps_t", "eps_n", "contact_time"])
+      assert.ok(Math.abs(own[key] - native[key]) < most, `${key} ${what}`);
+  });
+});
+
+ofPage("the regions of ten windows are those of the native program", "", async (page) => {
+  for (const { kappa, psi, damping, boundaries, regions } of data("atlases.json")) {
+    const atlas = await page.evaluate(
+      async ({ kappa, psi, damping }) => {
+        const axis = ([low, high]) => ({ low, high, log: true });
+        const scene = {
+          kind: "spheres",
+          axes: "kappa-psi",
+          x: axis(kappa),
+          y: axis(psi),
+          law: "paper",
+          damping,
+          tangential_damping: 0,
+          mu: 0.4,
+          alpha: 2 / 7,
+        };
+        return (await globalThis.explorer.hand.do({ task: "ask", scene, request: { do: "atlas" } }))
+          .answer;
+      },
+      { kappa, psi, damping },
+    );
+    const what = JSON.stringify({ kappa, psi, damping, objection: atlas.objection });
+    assert.deepEqual(atlas.regions.map((it) => it.itinerary).sort(), regions, what);
+    assert.equal(atlas.boundaries.length, boundaries, what);
+    assert.ok(atlas.agrees, what);
+  }
+});
+
+ofPage("a dragged point shows its contact, and the link follows", "", async (page) => {
+  await settled(page);
+  const box = await page.locator("#plane").boundingBox();
+  await page.mouse.move(box.x + 200, box.y + 200);
+  await page.mouse.down();
+  for (let step = 0; step <= 20; step++)
+    await page.mouse.move(box.x + 200 + 10 * step, box.y + 200 + 5 * step);
+  await page.mouse.up();
+  await settled(page);
+  const [kappa, psi] = await page.evaluate(() => globalThis.explorer.store.state.point);
+  assert.ok(kappa > 5 && kappa < 60 && psi > 0.5 && psi < 1.6, `${kappa} ${psi}`);
+  await page.waitForFunction((kappa) => location.hash.includes(String(kappa)), kappa);
+  await page.waitForFunction(
+    ([kappa, psi]) =>
+      document
+        .querySelector("#lines")
+        .textContent.includes(`--kappa ${kappa} --psi ${psi} --method auto`),
+    [kappa, psi],
+  );
+  assert.match(await page.textContent("#facts"), /itinerary/);
+});
+
+ofPage("wheel, Shift and keys change the window, and undo goes back", "", async (page) => {
+  await traced(page);
+  const window = () => page.evaluate(() => globalThis.explorer.store.state.x);
+  const first = await window();
+  const box = await page.locator("#plane").boundingBox();
+  await page.mouse.move(box.x + 300, box.y + 250);
+  await page.mouse.wheel(0, -400);
+  await page.waitForFunction((low) => globalThis.explorer.store.state.x.low > low, first.low);
+  await traced(page);
+  await mapped(page);
+  const zoomed = await window();
+  assert.ok(zoomed.high < first.high && zoomed.low > first.low);
+  await page.keyboard.down("Shift");
+  await page.mouse.down();
+  await page.mouse.move(box.x + 340, box.y + 250, { steps: 4 });
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+  const moved = await window();
+  assert.ok(
+    moved.low < zoomed.low &&
+      Math.abs(Math.log(moved.high / moved.low) - Math.log(zoomed.high / zoomed.low)) < 0.01,
+  );
+  await page.waitForTimeout(600);
+  await page.evaluate(() => globalThis.explorer.store.change({ point: [20, 0.8] }));
+  await page.waitForTimeout(600);
+  await page.focus("#plane");
+  const point = await page.evaluate(() => globalThis.explorer.store.state.point);
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction((at) => globalThis.explorer.store.state.point[0] > at, point[0]);
+  await page.keyboard.press("+");
+  assert.ok((await window()).high < moved.high);
+  for (let step = 0; step < 8; step++) await page.keyboard.press("Control+z");
+  assert.deepEqual(await window(), first);
+});
+
+ofPage("two fingers zoom", "", async (page) => {
+  await mapped(page);
+  const low = await page.evaluate(() => {
+    const canvas = document.querySelector("#plane");
+    const box = canvas.getBoundingClientRect();
+    canvas.setPointerCapture = () => {};
+    const send = (type, pointerId, x) =>
+      canvas.dispatchEvent(
+        new PointerEvent(type, {
+          pointerId,
+          clientX: box.left + x,
+          clientY: box.top + 200,
+          button: 0,
+          pointerType: "touch",
+          bubbles: true,
+        }),
+      );
+    send("pointerdown", 1, 200);
+    send("pointerdown", 2, 300);
+    send("pointermove", 2, 400);
+    send("pointerup", 1, 200);
+    send("pointerup", 2, 400);
+    return globalThis.explorer.store.state.x.low;
+  });
+  assert.ok(low > 1.5, String(low));
+});
+
+ofPage("numbers are typed, and mistakes are not taken", "", async (page) => {
+  await page.click("summary:has-text('Window and point')");
+  await page.fill("#x-low", "5");
+  await page.press("#x-low", "Enter");
+  await page.fill("#y-high", "abc");
+  await page.press("#y-high", "Enter");
+  await page.fill("#point-y", "2/7");
+  await page.press("#point-y", "Enter");
+  const { x, y, point } = await page.evaluate(() => globalThis.explorer.store.state);
+  assert.deepEqual([x.low, y.high, point[1]], [5, 2.2, 2 / 7]);
+  assert.equal(await page.inputValue("#y-high"), "2.2");
+});
+
+ofPage("the region under the pointer is told", "", async (page) => {
+  await traced(page);
+  const box = await page.locator("#plane").boundingBox();
+  await page.mouse.move(box.x + 300, box.y + 30);
+  await page.waitForFunction(() => / · \+ · /.test(document.querySelector("#told").textContent));
+});
+
+ofPage("every file can be read", "", async (page) => {
+  await settled(page);
+  await traced(page);
+  await mapped(page);
+  const file = async (what) => (await downloaded(page, `[data-write="${what}"]`)).bytes;
+  for (const what of ["course-svg", "plane-svg"]) {
+    const text = String(await file(what));
+    const problem = await page.evaluate(
+      (text) =>
+        new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror")
+          ?.textContent,
+      text,
+    );
+    assert.equal(problem, undefined, what);
+    assert.ok(text.startsWith("<svg") && text.includes("<path"), what);
+  }
+  for (const what of ["course-png", "plane-png"])
+    assert.equal((await file(what)).subarray(1, 4).toString(), "PNG", what);
+  const course = String(await file("course-csv"))
+    .trim()
+    .split("\n");
+  assert.equal(
+    course[0],
+    "time,compression,normal_velocity,normal_force,spring,tangential_force,velocity,sliding",
+  );
+  assert.equal(course.length, 1 + 701 + 6);
+  assert.ok(
+    course
+      .slice(1)
+      .every(
+        (line) =>
+          line.split(",").length === 8 &&
+          line.split(",").every((it) => Number.isFinite(Number(it))),
+      ),
+  );
+  assert.equal(
+    String(await file("events-csv"))
+      .trim()
+      .split("\n").length,
+    7,
+  );
+  const found = JSON.parse(await file("course-json"));
+  assert.deepEqual([found.schema, found.itinerary], ["stickslip.collision/1", "+o-o+o-"]);
+  const map = String(await file("plane-csv"))
+    .trim()
+    .split("\n");
+  assert.match(map[0], /^κ,ψ,count,eps_t,contact_time,energy_lost,eps_n$/);
+  const [width, height] = await page.evaluate(() => globalThis.explorer.plane.mapping.data.size);
+  assert.equal(map.length, 1 + width * height);
+  assert.equal(JSON.parse(await file("plane-json")).regions.length, 31);
+});
+
+test("a link leads to the same view", async () => {
+  const first = await browser.open("preset=figure4");
+  await first.page.evaluate(() => {
+    const { store } = globalThis.explorer;
+    store.change({
+      damping: 0.05,
+      law: "mfix/LSD",
+      quantity: "lost",
+      point: [7.5, 0.321],
+      boundaries: false,
+      x: { low: 2, high: 10, log: true },
+    });
+    store.change({
+      pinned: {
+        axes: "axis-ratio",
+        point: [3, 1],
+        law: "paper",
+        damping: 0.2,
+        tangential: 0,
+        mu: 0.3,
+        alpha: 0.25,
+        bodies: store.state.bodies,
+      },
+    });
+  });
+  await first.page.waitForFunction(() => location.hash.includes("pinned"));
+  const hash = await first.page.evaluate(() => location.hash.slice(1));
+  assert.ok(!hash.includes("alpha=") && hash.includes("damping=0.05"), hash);
+  const state = await first.page.evaluate(() => globalThis.explorer.store.state);
+  const second = await browser.open(hash);
+  assert.deepEqual(await second.page.evaluate(() => globalThis.explorer.store.state), state);
+  await second.page.waitForSelector(".facts .pinned");
+  assert.deepEqual([...first.said, ...second.said], []);
+  await first.close();
+  await second.close();
+});
+
+ofPage(
+  "a broken link is no harm",
+  "preset=nothing&x=%7B&point=%5B1%5D&damping=null&law=nonsense",
+  async (page) => {
+    await page.waitForSelector("#facts .error");
+    assert.match(await page.textContent("#facts"), /no law is called nonsense/);
+    await page.selectOption("#preset", "plane");
+    await page.waitForSelector("table.facts");
+  },
+);
+
+ofPage(
+  "an own system is typed, with a mistake that is mended",
+  "tab=system&example=ball&across=e&up=g&sx=%7B%22low%22%3A0.3%2C%22high%22%3A0.7%2C%22log%22%3Afalse%7D&sy=%7B%22low%22%3A5%2C%22high%22%3A15%2C%22log%22%3Afalse%7D&most=6",
+  async (page) => {
+    await page.waitForFunction(() => globalThis.explorer.system.run?.events.length > 3);
+    await traced(page);
+    const regions = await page.evaluate(() =>
+      globalThis.explorer.plane.atlas.regions.map((it) => it.itinerary).sort(),
+    );
+    assert.ok(regions.includes("bounce × 3") && regions.length >= 4, JSON.stringify(regions));
+    const text = await page.inputValue("#editor");
+    await page.fill("#editor", text.replace("v' = -g", "v' = -gg"));
+    await page.waitForSelector("#problem:not([hidden])");
+    assert.match(
+      await page.textContent("#problem"),
+      /line \d+, column 7: `gg` is not known; did you mean `g`\?/,
+    );
+    assert.equal(await page.getAttribute("#editor", "aria-invalid"), "true");
+    assert.equal(await page.locator("#gutter .wrong").count(), 1);
+    await page.fill("#editor", text.replace("e = 0.5", "e = 0.25"));
+    await page.waitForSelector("#problem", { state: "hidden" });
+    await page.waitForFunction(() => globalThis.explorer.system.run?.outcome === "accumulation");
+    const { events, accumulation } = await page.evaluate(() => globalThis.explorer.system.run);
+    // The first bounce is after 1 s, and each flight takes a quarter of the one before.
+    assert.ok(
+      Math.abs(events[0].time - 1) < 1e-9 && Math.abs(accumulation - 5 / 3) < 1e-6,
+      String(accumulation),
+    );
+    await page.fill('#sliders [data-parameter="e"][type="text"]', "0.5");
+    await page.press('#sliders [data-parameter="e"][type="text"]', "Enter");
+    await page.waitForFunction(
+      () => Math.abs((globalThis.explorer.system.run?.events[1]?.time ?? 0) - 2) < 1e-9,
+    );
+    await page.waitForFunction(() =>
+      document
+        .querySelector("#lines")
+        .textContent.includes("stickslip run system.slip --set e=0.5"),
+    );
+    const { name, bytes } = await downloaded(page, '[data-write="text"]');
+    assert.deepEqual([name, String(bytes)], ["system.slip", text.replace("e = 0.5", "e = 0.25")]);
+  },
+);
+
+ofPage("all examples run", "tab=system", async (page) => {
+  for (const name of await page.locator("#example option").allTextContents()) {
+    await page.selectOption("#example", name);
+    await page.waitForFunction((name) => globalThis.explorer.store.state.example === name, name);
+    await page.waitForFunction(() => {
+      const { system, store } = globalThis.explorer;
+      return system.parsed && system.run && (system.shownName = store.state.example);
+    });
+    assert.equal(await page.locator("#result .error").count(), 0, name);
+  }
+});
+
+ofPage("a worker that dies is started again, and the map comes", "", async (page) => {
+  await settled(page);
+  await mapped(page);
+  await page.evaluate(() => {
+    const { crew, hand } = globalThis.explorer;
+    crew.hands.forEach((it) => it.crash());
+    hand.crash();
+    globalThis.explorer.store.change({ point: [20, 0.8], x: { low: 2, high: 50, log: true } });
+  });
+  await settled(page);
+  await mapped(page);
+  await traced(page);
+  assert.ok(
+    await page.evaluate(() => globalThis.explorer.crew.hands.every((it) => it.restarts === 1)),
+  );
+});
+
+ofPage("a task that takes too long is ended", "", async (page) => {
+  const answer = await page.evaluate(async () => {
+    const text = "state x = 1\nx' = sin(1e5*t)\nend = 1e9";
+    return (
+      await globalThis.explorer.hand.do(
+        { task: "ask", request: { do: "run", text, set: {}, end: null } },
+        200,
+      )
+    ).answer;
+  });
+  assert.match(answer.error, /longer than 0.2 s|steps/);
+});
+
+ofPage("every preset and the tour show something", "", async (page) => {
+  for (const id of await page
+    .locator("#preset option")
+    .evaluateAll((options) => options.map((it) => it.value))) {
+    await page.selectOption("#preset", id);
+    await page.waitForFunction(() => document.querySelector("table.facts"));
+    assert.equal(await page.locator("#facts .error").count(), 0, id);
+    assert.ok((await page.textContent("#caption")).length > 30, id);
+  }
+  await page.click("#start-tour");
+  for (let stop = 0; stop < 6; stop++) await page.click("#tour button.primary");
+  assert.equal(await page.evaluate(() => document.body.dataset.tab), "system");
+  await page.click("#tour button.primary");
+  assert.equal(await page.locator("#tour").evaluate((dialog) => dialog.open), false);
+});
+
+ofPage("the points of the paper have 0 to 8 switches", "preset=figure4", async (page) => {
+  await page.waitForFunction(() => document.querySelectorAll("#letters button").length === 16);
+  const counts = [];
+  for (let letter = 0; letter < 16; letter++) {
+    await page.locator("#letters button").nth(letter).click();
+    const ratio = await page.evaluate(() => globalThis.explorer.store.state.point[1]);
+    await page.waitForFunction(
+      (psi) =>
+        Math.abs((globalThis.explorer.contact.contact?.document.parameters.psi ?? 0) / psi - 1) <
+        1e-6,
+      ratio / 1.4,
+    );
+    counts.push(
+      await page.evaluate(() => globalThis.explorer.contact.contact.document.switch_count),
+    );
+  }
+  assert.deepEqual(counts, [0, 2, 4, 6, 8, 6, 8, 6, 4, 6, 4, 2, 4, 2, 4, 2]);
+});
+
+ofPage("velocities of steel spheres", "preset=figure2", async (page) => {
+  await page.waitForFunction(() =>
+    document.querySelector("#facts")?.textContent.includes("units of time"),
+  );
+  const { parameters } = await page.evaluate(() => globalThis.explorer.contact.contact.document);
+  assert.ok(parameters.kappa > 1000, JSON.stringify(parameters));
+});
+
+ofPage(
+  "all is in 360 px, in the dark",
+  "",
+  async (page) => {
+    await settled(page);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.equal(wide, 360);
+    const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    assert.match(dark, /^rgb\((\d|1\d|2\d), /);
+    await page.click("#tab-system");
+    await page.waitForFunction(() => globalThis.explorer.system.run);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
+  },
+  { width: 360, height: 740, scheme: "dark" },
+);
+
+ofPage("everything has a name for a screen reader, and the result is told", "", async (page) => {
+  await settled(page);
+  const nameless = await page.evaluate(() => {
+    const named = (it) =>
+      it.getAttribute("aria-label") ||
+      it.textContent.trim() ||
+      it.labels?.[0]?.textContent.trim() ||
+      it.title;
+    return [...document.querySelectorAll("button, input, select, textarea, canvas, dialog")]
+      .filter((it) => !named(it))
+      .map((it) => it.outerHTML);
+  });
+  assert.deepEqual(nameless, []);
+  await page.waitForFunction(() =>
+    /6 switches, tangential restitution -0.0417/.test(
+      document.querySelector("#spoken").textContent,
+    ),
+  );
+  assert.match(await page.getAttribute("#course", "aria-label"), /Forces from/);
+});
+
+ofPage("the first curves come soon, and a frame of dragging is short", "", async (page) => {
+  await settled(page);
+  const first = await page.evaluate(() => performance.now());
+  await mapped(page);
+  const frames = await page.evaluate(async () => {
+    const { store, contact } = globalThis.explorer;
+    const work = [];
+    for (let step = 0; step < 60; step++) {
+      store.change({ point: [20 + step / 2, 0.5] });
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+      await new Promise((resolve) => setTimeout(resolve, 15));
+      work.push(contact.times.draw);
+    }
+    return work.sort((one, other) => one - other);
+  });
+  const { took } = await page.evaluate(() => ({ took: globalThis.explorer.plane.mapping.took }));
+  console.log(
+    `first contact after ${Math.round(first)} ms, drawing of a frame ${frames[30].toFixed(1)} ms, map ${Math.round(took)} ms`,
+  );
+  assert.ok(first < 5000 && frames[30] < 50);
+});
