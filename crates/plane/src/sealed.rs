@@ -100,7 +100,9 @@ fn write(value: &Value, bytes: &mut Vec<u8>) {
         }
         Value::Array(values) => {
             bytes.push(b'[');
-            values.iter().for_each(|value| write(value, bytes));
+            for value in values {
+                write(value, bytes);
+            }
             bytes.push(b']');
         }
         Value::String(own) => {

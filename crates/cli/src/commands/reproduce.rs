@@ -127,7 +127,7 @@ fn write_section(section: &Section, directory: &Path) -> Result<(), Failure> {
             Content::Map(sweep) => {
                 npz::archive(&sweep.grid, &Engine::Exact, &sweep.results, &version::program())
             }
-            Content::Atlas(atlas) => json::line(&Document::new(atlas)),
+            Content::Atlas(atlas) => json::sealed_line(&Document::new(atlas)),
         };
         write(&path, &bytes.map_err(|error| Failure::output(&path, error))?)?;
     }

@@ -96,7 +96,7 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
     let table = arguments.threads.with_steps(|report| tables::run(&settings, report))??;
     let stored = files.into_iter().zip(formats).map(|(file, format)| {
         let content = match format {
-            TableFormat::Json => json::line(&Document::from(&table)),
+            TableFormat::Json => json::sealed_line(&Document::from(&table)),
             TableFormat::Npz => table_npz::archive(&table, &version::program()),
             TableFormat::Header => {
                 table.c_header(prefix).map(String::into_bytes).map_err(io::Error::other)

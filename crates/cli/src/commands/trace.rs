@@ -7,6 +7,7 @@ use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::reduced;
 use stickslip_files::input::{number, range};
 use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, geojson};
@@ -120,7 +121,8 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
     let (verified, gained) = (verified?, gained.transpose()?);
     let mut stored = vec![write_json(file, &Document::new(&verified))?];
     if let Some(map) = map {
-        stored.push(write_json(map, &geojson(&verified))?);
+        let line = json::line(&geojson(&verified)).map_err(|error| map.failure(error))?;
+        stored.push(map.finish(&line)?);
     }
     if let (Some(file), Some(gained)) = (gaining_file, &gained) {
         stored.push(write_json(file, &gaining::Document::from(gained))?);

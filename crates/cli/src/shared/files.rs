@@ -62,12 +62,12 @@ pub fn plotted(plot: Option<&PictureFile>) -> Named<'_> {
     ("--plot", plot.map(PictureFile::path))
 }
 
-/// Writes `content` as JSON on one line, completely except for the name of the file.
+/// Writes a document as JSON on one line, with digests, completely except for the name of the file.
 ///
 /// # Errors
 /// [`Failure::File`]: the file cannot be written.
 pub fn write_json(file: OutputFile, content: &impl Serialize) -> Result<StoredFile, Failure> {
-    let line = json::line(content).map_err(|error| file.failure(error))?;
+    let line = json::sealed_line(content).map_err(|error| file.failure(error))?;
     Ok(file.finish(&line)?)
 }
 

@@ -1,9 +1,9 @@
 use stickslip_model::Reduction;
-use stickslip_plane::{Range, sealed};
 use stickslip_plane::atlas::{
     Atlas, BoundaryEnd, Document, DocumentError, Frame, MismatchFields, RatioRange, SCHEMA,
     VerifiedAtlas,
 };
+use stickslip_plane::{Range, sealed};
 
 use crate::windows::{crossing, empty, frame, traced};
 
