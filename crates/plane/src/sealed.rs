@@ -1,8 +1,8 @@
 //! JSON documents that a reader knows to be as they were written: each field has a digest.
 //!
-//! A file that was edited, cut or damaged may still be a document, with other numbers. Its digests no
-//! longer fit then, and say which field is another one. Spaces, line breaks and the spelling of
-//! numbers do not matter. A document without digests, as files had none before, is not checked.
+//! A file that was edited, cut or damaged may still be a document, with other numbers. Its digests
+//! no longer fit then, and say which field is another one. Spaces, line breaks and the spelling of
+//! numbers do not matter. A document without digests is not checked: older files have none.
 
 use std::collections::BTreeMap;
 

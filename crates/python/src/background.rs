@@ -1,22 +1,19 @@
-//! Long work on threads of its own, while the thread of Python looks for Ctrl-C and says how far the
-//! work is.
+//! Long work on threads of its own, while the thread of Python looks for Ctrl-C and says how far
+//! the work is.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use pyo3::prelude::*;
 use stickslip_plane::progress::{Progress, Report};
 
 use crate::failure::failed;
 use crate::hybrid::trouble::lock;
-use crate::parallel::Threads;
-
-/// The time between two looks for Ctrl-C.
-pub const PAUSE: Duration = Duration::from_millis(50);
+use crate::parallel::{PAUSE, Threads};
 
 /// A look for Ctrl-C now and then, from a run on the thread of Python.
 pub struct Signals {

@@ -1,15 +1,16 @@
 //! Work on many cases: in parallel, without the interpreter's lock, and interruptible.
 
 use std::ops::Range;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::background::PAUSE;
 use crate::failure::failed;
 
+/// The time between two looks for Ctrl-C.
+pub const PAUSE: Duration = Duration::from_millis(50);
 /// Cases that one thread computes together, at most.
 const PART: usize = 256;
 /// Parts of a piece, at least: threads that are done early take more of them.

@@ -8,11 +8,11 @@ use stickslip_expression::SystemFamily;
 use stickslip_solver::{Dop853, Margin};
 use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
-use crate::background::PAUSE;
 use crate::failure::bad_input;
 use crate::families::blueprint::{Blueprint, Members};
 use crate::families::failure::UserError;
 use crate::hybrid::trouble::{Trouble, lock};
+use crate::parallel::PAUSE;
 
 /// What the runs of a family are made of.
 #[derive(Clone)]

@@ -15,12 +15,11 @@ use stickslip_tracer::{
     Surveyor, Watch,
 };
 
-use crate::background::PAUSE;
 use crate::failure::failed;
 use crate::families::failure::{UserError, of_atlas};
 use crate::families::runner::Runner;
 use crate::hybrid::trouble::{Trouble, lock};
-use crate::parallel::Threads;
+use crate::parallel::{PAUSE, Threads};
 
 /// Python functions that see the progress of a trace and may cancel it.
 #[derive(FromPyObject)]

@@ -9,13 +9,13 @@ use pyo3::prelude::*;
 use stickslip_solver::sliding::{SampledFilippov, SwitchedDynamic};
 use stickslip_solver::{Guard, Schedule};
 
-use crate::background::PAUSE;
 use crate::hybrid::arguments::Clock;
 use crate::hybrid::function::{Caller, Code, Function, Input};
 use crate::hybrid::modes::{After, Change, Mode, Parts, Source};
 use crate::hybrid::numbers::{Problem, read};
 use crate::hybrid::regimes::Regimes;
 use crate::hybrid::trouble::Trouble;
+use crate::parallel::PAUSE;
 
 /// Calls after which the clock is looked at.
 const CALLS: u64 = 64;
