@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _atlas_results, _native
+from stickslip._axes import svg
 from stickslip._compiled import _count, _number
 from stickslip._family_atlases import Cancelled, FamilyAtlas, Itinerary, _label
 from stickslip._family_options import TraceOptions, VerifyOptions
@@ -71,6 +72,9 @@ class FamilyStack:
     def plot(self, ax: Axes | None = None, name: str = "value", **line: Any) -> Axes:
         """Draws the number of regions over the third parameter, called `name`, with matplotlib."""
         return _atlas_results.stack(self, ax, line, name)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
 
     def __repr__(self) -> str:
         text = f"FamilyStack: {len(self.layers)} layers, {len(self.changes)} changes"

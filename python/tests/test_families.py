@@ -193,6 +193,9 @@ def test_files(atlas: FamilyAtlas, tmp_path: Path) -> None:
         path.write_text("[")
         FamilyAtlas.load(path)
     path.write_text(re.sub(r'"ends":\[\d', '"ends":[7', atlas._native.json()))
+    with pytest.raises(ValueError, match="curves has changed"):
+        FamilyAtlas.load(path)
+    path.write_text(re.sub(r',"digests":.*', "}", path.read_text()))
     with pytest.raises(ValueError, match="vertex 7"):
         FamilyAtlas.load(path)
 
