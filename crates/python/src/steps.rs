@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use serde_json::to_string;
 use stickslip_model::Reduction;
 use stickslip_plane::progress::Report;
-use stickslip_practice::time_steps::{self, Quantity, Scheme, Settings, TimeStepsError};
+use stickslip_practice::time_steps::{self, Scheme, Settings, TimeStepsError};
 
 use crate::arrays::{Parameters, Points};
 use crate::background::watched;
@@ -58,16 +58,6 @@ impl TimeSteps {
     /// The JSON that the program prints.
     fn json(&self) -> PyResult<String> {
         to_string(&self.0).map_err(failed)
-    }
-
-    /// The largest step over the contact time with errors of a quantity that are not larger.
-    fn largest_step(&self, quantity: &str, wanted: f64) -> PyResult<Option<f64>> {
-        let mut known = Quantity::ALL.into_iter();
-        let names = Quantity::ALL.map(Quantity::name);
-        let quantity = known.find(|known| known.name() == quantity).ok_or_else(|| {
-            bad_input(format!("quantity = {quantity:?}; expected one of {names:?}"))
-        })?;
-        Ok(self.0.largest_step(quantity, wanted))
     }
 
     /// The errors over the step, as an SVG document.
