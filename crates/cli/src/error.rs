@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use stickslip_files::FileError;
+use stickslip_model::CollisionFailure;
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
 use stickslip_practice::fit::FitError;
@@ -12,7 +13,7 @@ use stickslip_practice::tables::TableError;
 use stickslip_practice::time_steps::TimeStepsError;
 use stickslip_reproduction::ReproductionError;
 use stickslip_reproduction::figures::Objection;
-use stickslip_studies::{CollisionFailure, StudyError};
+use stickslip_studies::StudyError;
 
 /// The reason why the program did not do what it was asked.
 #[derive(Debug, thiserror::Error)]
@@ -169,7 +170,7 @@ impl From<TableError> for Failure {
     /// The failure of a table whose window comes from options.
     fn from(error: TableError) -> Self {
         match error {
-            TableError::Settings(_) | TableError::Parameter(_) => Self::Usage(error.to_string()),
+            TableError::Settings(_) | TableError::Law => Self::Usage(error.to_string()),
             TableError::Atlas(error) => error.into(),
             error => Self::Table(error),
         }

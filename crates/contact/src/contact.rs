@@ -1,5 +1,7 @@
 //! The parameters of a collision.
 
+use stickslip_solver::InvalidValue;
+
 use crate::law::{Damping, Law};
 
 /// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
@@ -12,7 +14,7 @@ use crate::law::{Damping, Law};
 /// let contact = Contact::new(63.0, 0.5, 0.0)?;
 /// assert_eq!(contact.kappa(), 63.0);
 /// assert!(Contact::new(-1.0, 0.5, 0.0).is_err());
-/// # Ok::<(), stickslip_contact::InvalidParameter>(())
+/// # Ok::<(), stickslip_contact::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -43,8 +45,8 @@ impl Contact {
     /// ratio `psi` = (g_t/g_n) α/μ > 0 and the scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥ 0.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first parameter that is out of its range.
-    pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`] names the first parameter that is out of its range.
+    pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidValue> {
         in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
         in_range("psi", psi, "a finite number above 0", psi > 0.0)?;
         in_range("damping", damping, "a finite number, 0 or above", damping >= 0.0)?;
@@ -55,9 +57,9 @@ impl Contact {
     /// (γ_t/γ_n)/α ≥ 0, which is a ratio of the two damping constants.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: the tangential damping is out of its range, the damping has no effect
+    /// [`InvalidValue`]: the tangential damping is out of its range, the damping has no effect
     /// in this law, or a contact with this damping never ends.
-    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
+    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
         let Self { damping, .. } = self;
         let ok = tangential_damping >= 0.0;
         in_range("tangential_damping", tangential_damping, "a finite number, 0 or above", ok)?;
@@ -129,8 +131,8 @@ fn in_range(
     value: f64,
     expected: &'static str,
     ok: bool,
-) -> Result<(), InvalidParameter> {
-    if ok && value.is_finite() { Ok(()) } else { Err(InvalidParameter { name, value, expected }) }
+) -> Result<(), InvalidValue> {
+    InvalidValue::check(name, value, expected, ok && value.is_finite())
 }
 
 /// What was asked for is computed for the paper's contact law only.
@@ -139,16 +141,4 @@ fn in_range(
 pub struct OtherLaw {
     /// What was asked for.
     pub what: &'static str,
-}
-
-/// A parameter of a collision is out of its range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{name} = {value} is out of range; expected {expected}")]
-pub struct InvalidParameter {
-    /// The parameter's name.
-    pub name: &'static str,
-    /// The value that was given.
-    pub value: f64,
-    /// The range in words.
-    pub expected: &'static str,
 }

@@ -23,7 +23,7 @@ use std::fmt;
 /// let contact = Contact::new(1.2, 0.3, 0.0)?.with_law(mindlin, 0.0)?;
 /// // A spring that stiffens with the load is not conservative.
 /// assert!(contact.law().spring_energy().creates());
-/// # Ok::<(), stickslip_contact::InvalidParameter>(())
+/// # Ok::<(), stickslip_contact::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -26,10 +26,11 @@ mod result;
 #[cfg(feature = "serde")]
 mod serialize;
 
-pub use contact::{Contact, InvalidParameter, OtherLaw};
+pub use contact::{Contact, OtherLaw};
 pub use law::{Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
 pub use phase::{Regime, Side};
 pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
+pub use stickslip_solver::InvalidValue;
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

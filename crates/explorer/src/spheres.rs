@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::{Value, json};
 use stickslip_model::{
-    BodyPair, Collider, Collision, Contact, Engine, InvalidParameter, Material, Moment, Reduction,
+    BodyPair, Collider, Collision, Contact, Engine, InvalidValue, Material, Moment, Reduction,
     Regime, Side, Surface, document, exact, linear, presets,
 };
 use stickslip_plane::{CollisionPlane, Range};
@@ -77,12 +77,11 @@ impl Spheres {
     /// An object whose `error` says what is out of its range.
     pub fn new(request: &SpheresRequest) -> Result<Self, Value> {
         let SpheresRequest { axes, damping, tangential_damping, mu, alpha, .. } = *request;
-        let refused = |error: InvalidParameter| json!({ "error": error.to_string() });
+        let refused = |error: InvalidValue| json!({ "error": error.to_string() });
         for (name, value, most) in [("mu", mu, f64::INFINITY), ("alpha", alpha, 1.0)] {
-            if !(value > 0.0 && value.is_finite() && value <= most) {
-                let expected = "a number above 0, and alpha at most 1";
-                return Err(refused(InvalidParameter { name, value, expected }));
-            }
+            let expected = "a number above 0, and alpha at most 1";
+            let accepted = value > 0.0 && value.is_finite() && value <= most;
+            InvalidValue::check(name, value, expected, accepted).map_err(refused)?;
         }
         let Some(preset) = presets::find(&request.law) else {
             return Err(json!({ "error": format!("no law is called {}", request.law) }));
@@ -117,7 +116,7 @@ impl Spheres {
     }
 
     /// The contact at a point of the plane.
-    fn contact(&self, [x, y]: [f64; 2]) -> Result<Contact, InvalidParameter> {
+    fn contact(&self, [x, y]: [f64; 2]) -> Result<Contact, InvalidValue> {
         match &self.parameters {
             Parameters::Scaled { units, any } => {
                 Contact::new(x * units[0], y * units[1], any.damping())?
@@ -128,10 +127,7 @@ impl Spheres {
     }
 
     /// The collisions between two values of each axis, and the parameters of a unit along both.
-    pub fn plane(
-        &self,
-        [x, y]: [Range; 2],
-    ) -> Result<(CollisionPlane, [f64; 2]), InvalidParameter> {
+    pub fn plane(&self, [x, y]: [Range; 2]) -> Result<(CollisionPlane, [f64; 2]), InvalidValue> {
         match self.parameters {
             Parameters::Scaled { units: [of_x, of_y], any } => {
                 let (x, y) = ((x.low * of_x, x.high * of_x), (y.low * of_y, y.high * of_y));

@@ -4,11 +4,10 @@ mod whole;
 
 use std::sync::Arc;
 
-use stickslip_solver::{Direction, Guard, InvalidTimes, Times};
+use stickslip_solver::{Direction, Guard, InvalidValue, Times};
 
 use crate::branches::Branched;
 use crate::graph::{Formula, Variable};
-use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
 use crate::run::{Mode, Reaction, Resets, Rest, Runnable, Ticks};
 use crate::system::{self, Next, Rule, System, Trigger};
@@ -57,8 +56,8 @@ impl System {
     /// The system, ready for parameters.
     ///
     /// # Errors
-    /// [`InvalidParameters`] if its parts, which may be made by hand, do not fit together.
-    pub fn compile(&self) -> Result<Compiled, InvalidParameters> {
+    /// [`InvalidValue`] if its parts, which may be made by hand, do not fit together.
+    pub fn compile(&self) -> Result<Compiled, InvalidValue> {
         let mut compiled = self.compile_as_it_is()?;
         if let Some(Branched { system, starts }) = self.branched() {
             let (components, parameters) = (self.components.len(), self.parameters.len());
@@ -70,7 +69,7 @@ impl System {
     }
 
     /// The system whose branches are no events.
-    pub(crate) fn compile_as_it_is(&self) -> Result<Compiled, InvalidParameters> {
+    pub(crate) fn compile_as_it_is(&self) -> Result<Compiled, InvalidValue> {
         whole::require(self)?;
         let fixed = self.fixed_formulas();
         let inputs = Inputs { components: 0, parameters: self.parameters.len(), fixed: false };
@@ -101,7 +100,7 @@ impl System {
     ///
     /// # Errors
     /// As [`Self::compile`] and [`Compiled::with`].
-    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidParameters> {
+    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidValue> {
         self.compile()?.with(parameters)
     }
 
@@ -190,26 +189,22 @@ impl System {
 
 impl Compiled {
     /// Refuses a wrong number of parameters, and those that are not finite.
-    pub(crate) fn check(&self, parameters: &[f64]) -> Result<(), InvalidParameters> {
+    pub(crate) fn check(&self, parameters: &[f64]) -> Result<(), InvalidValue> {
         if parameters.len() != self.parameters.len() {
             let (found, expected) = (parameters.len(), self.parameters.len());
-            let names = self.parameters.join(", ");
-            return Err(InvalidParameters::Count { found, expected, names });
+            let expected = format!("{expected}: {}", self.parameters.join(", "));
+            return Err(InvalidValue::new("the number of parameters", found, expected));
         }
-        if let Some((name, &value)) =
-            self.parameters.iter().zip(parameters).find(|(_, value)| !value.is_finite())
-        {
-            return Err(InvalidParameters::NotFinite { name: name.clone(), value });
-        }
-        Ok(())
+        let mut values = self.parameters.iter().zip(parameters);
+        values.try_for_each(|(name, &value)| finite(|| name.clone(), value))
     }
 
     /// The system with numbers for its parameters.
     ///
     /// # Errors
-    /// [`InvalidParameters`] if their number is wrong, if one is not finite, or if a start, an end
+    /// [`InvalidValue`] if their number is wrong, if one is not finite, or if a start, an end
     /// or a time of a rule is not a number with them.
-    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidParameters> {
+    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidValue> {
         self.check(parameters)?;
         let mut numbers = vec![f64::NAN; self.count];
         self.numbers.run(f64::NAN, parameters, &mut numbers);
@@ -249,17 +244,22 @@ impl Compiled {
 struct Numbers(std::vec::IntoIter<f64>);
 
 impl Numbers {
-    fn next(&mut self, what: impl FnOnce() -> String) -> Result<f64, InvalidParameters> {
+    fn next(&mut self, what: impl FnOnce() -> String) -> Result<f64, InvalidValue> {
         let value = self.0.next().unwrap_or(f64::NAN);
-        if value.is_finite() {
-            return Ok(value);
-        }
-        Err(InvalidParameters::Value { what: what(), value, expected: "a finite number" })
+        finite(what, value).map(|()| value)
+    }
+}
+
+fn finite(what: impl FnOnce() -> String, value: f64) -> Result<(), InvalidValue> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(InvalidValue::new(what(), value, "a finite number"))
     }
 }
 
 impl Clock {
-    fn ticks(self, numbers: &mut Numbers, mode: &str) -> Result<Ticks, InvalidParameters> {
+    fn ticks(self, numbers: &mut Numbers, mode: &str) -> Result<Ticks, InvalidValue> {
         let what = |what: &str| format!("{what} of a rule of mode `{mode}`");
         match self {
             Self::Never => Ok(Ticks::Never),
@@ -267,19 +267,12 @@ impl Clock {
                 let times = (0..count).map(|_| numbers.next(|| what("a time")));
                 let mut times = times.collect::<Result<Vec<_>, _>>()?;
                 times.sort_by(f64::total_cmp);
-                let finite = |_: InvalidTimes| InvalidParameters::Value {
-                    what: what("a time"),
-                    value: f64::NAN,
-                    expected: "a finite number",
-                };
-                Ok(Ticks::At(Times::new(times).map_err(finite)?))
+                Ok(Ticks::At(Times::new(times)?))
             }
             Self::Every => {
                 let value = numbers.next(|| what("the period"))?;
                 if value <= 0.0 {
-                    let what = what("the period");
-                    let expected = "a number above 0";
-                    return Err(InvalidParameters::Value { what, value, expected });
+                    return Err(InvalidValue::new(what("the period"), value, "a number above 0"));
                 }
                 Ok(Ticks::Every(value, numbers.next(|| what("the phase"))?))
             }

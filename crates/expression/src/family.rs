@@ -2,7 +2,7 @@
 
 mod align;
 
-use stickslip_solver::{Dop853, Margin, Options, RunError};
+use stickslip_solver::{Dop853, InvalidValue, Margin, Options, RunError};
 use stickslip_tracer::{
     DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun,
     Itinerary, Point,
@@ -11,7 +11,6 @@ use stickslip_tracer::{
 pub use align::RuleOrder;
 
 use crate::compiled::Compiled;
-use crate::invalid::InvalidParameters;
 use crate::run::Runnable;
 use crate::system::System;
 
@@ -72,7 +71,7 @@ impl SystemFamily {
     /// `parameters`. All runs end at `end`, if it is given.
     ///
     /// # Errors
-    /// [`InvalidParameters`] if there are not as many parameters as the system has, if one is not
+    /// [`InvalidValue`] if there are not as many parameters as the system has, if one is not
     /// finite, if an axis is none of them or both are the same, or if the first mode depends on
     /// one.
     pub fn new(
@@ -81,7 +80,7 @@ impl SystemFamily {
         parameters: &[f64],
         end: Option<f64>,
         options: Options,
-    ) -> Result<Self, InvalidParameters> {
+    ) -> Result<Self, InvalidValue> {
         Self::ordered(system, RuleOrder::of(system), axes, parameters, (end, options))
     }
 
@@ -95,11 +94,11 @@ impl SystemFamily {
         axes: [usize; 2],
         parameters: &[f64],
         (end, options): (Option<f64>, Options),
-    ) -> Result<Self, InvalidParameters> {
+    ) -> Result<Self, InvalidValue> {
         if !order.fits(system) {
-            let (what, value) = ("the number of rules in order".to_owned(), order.names.len());
             let expected = "a place for each rule of each mode";
-            return Err(InvalidParameters::Value { what, value: value as f64, expected });
+            let count = order.names.len();
+            return Err(InvalidValue::new("the number of rules in order", count, expected));
         }
         axes.iter().try_for_each(|&axis| system.require_one_first_mode(axis))?;
         // Sequences are those of rules alone.
@@ -108,9 +107,8 @@ impl SystemFamily {
         compiled.check(parameters)?;
         let count = parameters.len();
         if let Some(&axis) = axes.iter().find(|&&axis| axis >= count || axes[0] == axes[1]) {
-            let (what, value) = ("the place of an axis".to_owned(), axis as f64);
             let expected = "two different parameters of the system";
-            return Err(InvalidParameters::Value { what, value, expected });
+            return Err(InvalidValue::new("the place of an axis", axis, expected));
         }
         let problem = Plane { compiled, parameters: parameters.to_vec(), axes, end };
         Ok(Self { runs: DynamicFamily { problem, method: Dop853, options }, rules })

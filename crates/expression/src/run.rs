@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 use stickslip_number::Number;
-use stickslip_solver::{DynamicStart, Guard, ReadableDynamic, Schedule, Times};
+use stickslip_solver::{DynamicStart, Guard, InvalidValue, ReadableDynamic, Schedule, Times};
 
-use crate::invalid::InvalidParameters;
 use crate::program::Program;
 use crate::system::Next;
 
@@ -86,38 +85,29 @@ impl Runnable {
     /// The same system with another start, where one is given: mode, time and state.
     ///
     /// # Errors
-    /// [`InvalidParameters`] if there is no such mode, or if the state has another length or is not
+    /// [`InvalidValue`] if there is no such mode, or if the state has another length or is not
     /// finite.
     pub fn starting(
         mut self,
         mode: Option<usize>,
         s: Option<f64>,
         state: Option<&[f64]>,
-    ) -> Result<Self, InvalidParameters> {
-        let wrong = |what: &str, value: f64, expected| InvalidParameters::Value {
-            what: what.to_owned(),
-            value,
-            expected,
-        };
+    ) -> Result<Self, InvalidValue> {
         if let Some(mode) = mode {
-            if mode >= self.modes.len() {
-                return Err(wrong("the first mode", mode as f64, "a mode of the system"));
-            }
+            let accepted = mode < self.modes.len();
+            InvalidValue::check("the first mode", mode, "a mode of the system", accepted)?;
             self.first = mode;
         }
         if let Some(s) = s {
-            if !s.is_finite() {
-                return Err(wrong("the start", s, "a finite number"));
-            }
+            InvalidValue::check("the start", s, "a finite number", s.is_finite())?;
             self.start = s;
         }
         if let Some(state) = state {
-            if state.len() != self.state.len() {
-                let length = state.len() as f64;
-                return Err(wrong("the number of components", length, "that of the system"));
-            }
-            if let Some(&value) = state.iter().find(|value| !value.is_finite()) {
-                return Err(wrong("a component of the state", value, "a finite number"));
+            let (count, accepted) = (state.len(), state.len() == self.state.len());
+            InvalidValue::check("the number of components", count, "that of the system", accepted)?;
+            for &value in state {
+                let (name, accepted) = ("a component of the state", value.is_finite());
+                InvalidValue::check(name, value, "a finite number", accepted)?;
             }
             self.state = state.to_vec();
         }

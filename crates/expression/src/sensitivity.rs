@@ -6,11 +6,10 @@
 //! makes from those of the system, whose branches are events. So there is no second engine: error
 //! control, events and speed are those of any run.
 
-use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
+use stickslip_solver::{EmbeddedPair, InvalidValue, Options, Outcome, RunError};
 use thiserror::Error;
 
 use crate::graph::{Binary, Formula, Graph, Unary, Variable};
-use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
 use crate::recording::{Hidden, Recording};
 use crate::system::{Component, Next, Rule, System, Trigger};
@@ -52,7 +51,7 @@ pub struct Moving {
 pub enum SensitivityError {
     /// The system cannot run with these parameters.
     #[error(transparent)]
-    Parameters(#[from] InvalidParameters),
+    Parameters(#[from] InvalidValue),
     /// The run failed, for instance at a graze, where derivatives do not exist.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -110,8 +109,8 @@ impl System {
                 By::Parameter(place) => ("the place of a parameter", *place),
                 By::Start(place) => ("the place of a component", *place),
             };
-            let (what, expected) = (what.to_owned(), "one of those that the system has");
-            return Err(InvalidParameters::Value { what, value: value as f64, expected }.into());
+            let expected = "one of those that the system has";
+            return Err(InvalidValue::new(what, value, expected).into());
         }
         let end_moves = end.is_none();
         let end = end.unwrap_or(compiled.with(parameters)?.end());

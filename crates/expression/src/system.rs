@@ -1,9 +1,8 @@
 //! What a hybrid system consists of.
 
-use stickslip_solver::Direction;
+use stickslip_solver::{Direction, InvalidValue};
 
 use crate::graph::{Formula, Graph, Variable};
-use crate::invalid::InvalidParameters;
 
 /// A hybrid system: formulas for what changes, and rules for what happens when.
 #[derive(Clone, Debug, Default)]
@@ -48,14 +47,15 @@ impl System {
     /// be compared along a boundary.
     ///
     /// # Errors
-    /// [`InvalidParameters::FirstMode`].
-    pub fn require_one_first_mode(&self, parameter: usize) -> Result<(), InvalidParameters> {
+    /// [`InvalidValue`] names the parameter.
+    pub fn require_one_first_mode(&self, parameter: usize) -> Result<(), InvalidValue> {
         let Some((formula, _)) = self.otherwise else { return Ok(()) };
         let decides = u32::try_from(parameter)
             .is_ok_and(|it| self.graph.reads(&[formula]).contains(&Variable::Parameter(it)));
         match self.parameters.get(parameter) {
             Some(Parameter { name, .. }) if decides => {
-                Err(InvalidParameters::FirstMode { name: name.clone() })
+                let expected = "one on which the first mode does not depend";
+                Err(InvalidValue::new("parameter", &**name, expected))
             }
             _ => Ok(()),
         }

@@ -3,20 +3,22 @@
 //! A further engine is a module beside [`integrator`], or a crate beside `stickslip-exact`, and a
 //! variant of [`Engine`].
 
-use stickslip_contact::{Collision, Contact, Law, NotFinite};
-use stickslip_exact::exact::{self, ExactError};
+use stickslip_contact::{Collision, Contact, Law};
+use stickslip_exact::exact::{self};
 use stickslip_exact::linear;
-use stickslip_solver::{Dop853, Dopri5, InvalidOption, Options, Statistics};
+use stickslip_solver::{Dop853, Dopri5, InvalidValue, Options, Statistics};
 
 pub(crate) mod domain;
+pub mod error;
 mod estimate;
 pub mod history;
 pub mod integrator;
 pub mod sensitivity;
 
+use error::CollisionError;
 pub use estimate::Estimate;
 use history::History;
-use integrator::{Collider, CollisionError};
+use integrator::Collider;
 
 /// A way to compute collisions.
 ///
@@ -53,29 +55,12 @@ pub struct Tolerances {
     pub atol: f64,
 }
 
-/// The reason why an engine has no result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum EngineError {
-    /// The integration failed.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
-    /// The exact solution does not apply to the contact.
-    #[error(transparent)]
-    Exact(#[from] ExactError),
-    /// A result is beyond the range of doubles.
-    #[error(transparent)]
-    NotFinite(#[from] NotFinite),
-}
-
 /// The reason why options choose no engine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidChoice {
-    /// No method has this name.
-    #[error("method {name:?} is unknown; expected auto, exact, dop853 or dopri5")]
-    Method {
-        /// The name.
-        name: String,
-    },
+    /// No method has the name, or a tolerance is out of range.
+    #[error(transparent)]
+    Value(#[from] InvalidValue),
     /// The exact solution has no tolerances.
     #[error(
         "{name} {value:?} has no effect with the method exact, which has no tolerances; \
@@ -87,9 +72,6 @@ pub enum InvalidChoice {
         /// The tolerance.
         value: f64,
     },
-    /// A tolerance is out of range.
-    #[error(transparent)]
-    Tolerance(#[from] InvalidOption),
 }
 
 impl Tolerances {
@@ -125,7 +107,10 @@ impl Engine {
             ("dopri5", _) => Self::Dopri5(tolerances(Tolerances::DOPRI5)),
             ("exact" | "auto", None) => Self::Exact,
             ("exact", Some((name, value))) => return Err(InvalidChoice::Unused { name, value }),
-            (other, _) => return Err(InvalidChoice::Method { name: other.to_owned() }),
+            (other, _) => {
+                let expected = "\"auto\", \"exact\", \"dop853\" or \"dopri5\"";
+                return Err(InvalidValue::new("method", other, expected).into());
+            }
         };
         if let Some(Tolerances { rtol, atol }) = engine.tolerances() {
             Options { rtol, atol, ..Options::default() }.validate()?;
@@ -182,13 +167,13 @@ impl Engine {
     /// Computes the collision of `contact`, with the statistics of the run if it is integrated.
     ///
     /// # Errors
-    /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a
+    /// [`CollisionError`]: the contact is out of the engine's range, the integration fails, or a
     /// result is beyond the range of doubles. Energies are not checked; see
     /// [`EnergyLedger::require_finite`](crate::EnergyLedger::require_finite).
     pub fn collide(
         &self,
         contact: Contact,
-    ) -> Result<(Collision, Option<Statistics>), EngineError> {
+    ) -> Result<(Collision, Option<Statistics>), CollisionError> {
         let mut collision = Collision::before(contact);
         let statistics = self.collide_into(contact, &mut collision)?;
         Ok((collision, statistics))
@@ -202,7 +187,7 @@ impl Engine {
         &self,
         contact: Contact,
         collision: &mut Collision,
-    ) -> Result<Option<Statistics>, EngineError> {
+    ) -> Result<Option<Statistics>, CollisionError> {
         let statistics = match self.resolved(&contact) {
             Self::Dop853(Tolerances { rtol, atol }) => {
                 let collider = Collider::with_tolerances(Dop853, rtol, atol);
@@ -237,7 +222,7 @@ impl Engine {
     pub fn followed(
         &self,
         contact: Contact,
-    ) -> Result<(Collision, Option<Statistics>, History), EngineError> {
+    ) -> Result<(Collision, Option<Statistics>, History), CollisionError> {
         let (collision, statistics, history) = match self.resolved(&contact) {
             Self::Dop853(Tolerances { rtol, atol }) => {
                 Collider::with_tolerances(Dop853, rtol, atol).followed(contact)?
@@ -258,9 +243,9 @@ impl Engine {
     /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
     ///
     /// # Errors
-    /// [`EngineError::Collision`]: the contact is out of the integrator's range, or the integration
+    /// [`CollisionError::Collision`]: the contact is out of the integrator's range, or the integration
     /// fails.
-    pub fn history(&self, contact: Contact) -> Result<History, EngineError> {
+    pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         let history = match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {
                 Collider::with_tolerances(Dop853, rtol, atol).history(contact)

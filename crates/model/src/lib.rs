@@ -40,12 +40,13 @@ mod limits;
 mod serialize;
 mod spheres;
 
+pub use engines::error::{CollisionError, CollisionFailure};
 pub use engines::history::{History, Moment, PhaseHistory, Snapshot};
 #[doc(hidden)]
 pub use engines::integrator as collision;
-pub use engines::integrator::{Collider, CollisionError};
+pub use engines::integrator::Collider;
 pub use engines::sensitivity::{Derived, Sensitivity};
-pub use engines::{Engine, EngineError, Estimate, InvalidChoice, Tolerances};
+pub use engines::{Engine, Estimate, InvalidChoice, Tolerances};
 pub use engines::{history, integrator, sensitivity};
 pub use limits::{coulomb, inner, largest, normal};
 pub use nalgebra::Vector3;
@@ -64,7 +65,7 @@ pub use spheres::{bodies, encounter, quantity, scaling};
 pub use stickslip_contact::domain::OutOfDomain;
 #[doc(inline)]
 pub use stickslip_contact::{
-    Collision, Contact, Damping, End, EnergyLedger, FEW_SWITCHES, HistoryOf, InvalidParameter, Law,
+    Collision, Contact, Damping, End, EnergyLedger, FEW_SWITCHES, HistoryOf, InvalidValue, Law,
     Normal, NotFinite, OtherLaw, Regime, Side, SpringEnergy, Switch, Switches, Tangential, general,
     presets, regularized,
 };

@@ -7,11 +7,14 @@
 //!
 //! `interval` has the arithmetic of intervals, and `four` computes four of them side by side;
 //! `enclosure` is built on both.
+//!
+//! Every crate meets input that it cannot use, and says so by an [`InvalidValue`].
 
 mod dual;
 mod enclosure;
 mod four;
 mod interval;
+mod invalid;
 
 use std::f64::consts::FRAC_2_SQRT_PI;
 use std::fmt::Debug;
@@ -22,6 +25,7 @@ use num_dual::{Dual64, DualNum};
 pub use dual::Dual;
 pub use enclosure::Enclosure;
 pub use interval::Interval;
+pub use invalid::{GivenValue, InvalidValue};
 
 /// A number in which a formula is written: a double, a dual number or an enclosure.
 ///

@@ -2,7 +2,7 @@
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
-use stickslip_model::{BodyPair, Collision, Contact, Engine, InvalidParameter, Law, Side};
+use stickslip_model::{BodyPair, Collision, Contact, Engine, InvalidValue, Law, Side};
 use stickslip_solver::{Dop853, Margin, Options, Outcome, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
@@ -100,8 +100,8 @@ impl CollisionPlane {
     /// Collisions with κ and ψ between two values each.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: a value that no collision can have.
-    pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`]: a value that no collision can have.
+    pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidValue> {
         let sides = [kappa, psi].map(|(low, high)| Range { low, high });
         let first = Contact::new(kappa.0, psi.0, damping)?;
         Contact::new(kappa.1, psi.1, damping)?;
@@ -114,12 +114,12 @@ impl CollisionPlane {
     /// normal velocity.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: a value that no collision can have.
+    /// [`InvalidValue`]: a value that no collision can have.
     pub fn oblique(
         oblique: Oblique,
         kappa: (f64, f64),
         psi: (f64, f64),
-    ) -> Result<Self, InvalidParameter> {
+    ) -> Result<Self, InvalidValue> {
         let BodyPair { law, .. } = oblique.pair;
         let damping = oblique.pair.tangential_damping();
         let plane = Self::new(kappa, psi, oblique.at(1.0, psi.0)?.damping())?;
@@ -142,12 +142,12 @@ impl CollisionPlane {
     /// let plane = CollisionPlane::velocities(pair, sides)?;
     /// let impact = pair.impact(2.0, 0.5)?;
     /// assert_eq!(plane.contact_at([2.0, 0.5])?, impact.contact);
-    /// # Ok::<(), stickslip_model::InvalidParameter>(())
+    /// # Ok::<(), stickslip_model::InvalidValue>(())
     /// ```
     ///
     /// # Errors
-    /// [`InvalidParameter`]: a velocity is not above 0, or a value that no collision can have.
-    pub fn velocities(pair: BodyPair, sides: [Range; 2]) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`]: a velocity is not above 0, or a value that no collision can have.
+    pub fn velocities(pair: BodyPair, sides: [Range; 2]) -> Result<Self, InvalidValue> {
         let [normal, tangential] = sides;
         let first = pair.impact(normal.low, tangential.low)?.contact;
         let chart = Chart::of_velocities(normal, tangential);
@@ -166,8 +166,8 @@ impl CollisionPlane {
     /// The same collisions with another law.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: no collision has this law with the dampings.
-    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`]: no collision has this law with the dampings.
+    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
         let first = self.first.with_law(law, tangential_damping)?;
         let sheet = Sheet { integrated: !first.obeys_paper(), ..self.sheet };
         Ok(Self { sheet, first, ..self })
@@ -222,8 +222,8 @@ impl CollisionPlane {
     /// The collision with two parameters: κ and ψ, or the velocities.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: no collision has these values.
-    pub fn contact_at(&self, [x, y]: [f64; 2]) -> Result<Contact, InvalidParameter> {
+    /// [`InvalidValue`]: no collision has these values.
+    pub fn contact_at(&self, [x, y]: [f64; 2]) -> Result<Contact, InvalidValue> {
         match &self.parameters {
             Parameters::Scaled => Contact::new(x, y, self.first.damping())?
                 .with_law(self.first.law(), self.first.tangential_damping()),
@@ -238,8 +238,8 @@ impl CollisionPlane {
     /// below. There ψ is kept at half of the window's lower end.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: κ or ψ is beyond the range of numbers.
-    pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
+    /// [`InvalidValue`]: κ or ψ is beyond the range of numbers.
+    pub fn contact(&self, point: &Point) -> Result<Contact, InvalidValue> {
         let [x, y] = self.parameters(point);
         match self.parameters {
             Parameters::Scaled | Parameters::Oblique(_) => {

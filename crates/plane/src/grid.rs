@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use stickslip_model::{BodyPair, Contact, InvalidParameter, Law, Reduction};
+use stickslip_model::{BodyPair, Contact, InvalidValue, Law, Reduction};
 
 use crate::range::Range;
 
@@ -140,8 +140,8 @@ impl Grid {
     /// The collision at the centre of a cell.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: no collision has the parameters of this cell.
-    pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidParameter> {
+    /// [`InvalidValue`]: no collision has the parameters of this cell.
+    pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidValue> {
         let [kappa, psi, damping] = self.parameters(column, row)?;
         Contact::new(kappa, psi, damping)?.with_law(self.law, self.tangential_damping)
     }
@@ -204,7 +204,7 @@ impl Grid {
     }
 
     /// κ, ψ and the damping at the centre of a cell.
-    fn parameters(&self, column: usize, row: usize) -> Result<[f64; 3], InvalidParameter> {
+    fn parameters(&self, column: usize, row: usize) -> Result<[f64; 3], InvalidValue> {
         let (x, y) = (self.columns.centre(column), self.rows.centre(row));
         match self.coordinates {
             Coordinates::Psi { damping } => Ok([x, y, damping]),

@@ -1,6 +1,6 @@
 //! Impacts of one speed at all angles.
 
-use stickslip_model::{BodyPair, Contact, InvalidParameter, Reduction};
+use stickslip_model::{BodyPair, Contact, InvalidValue, Reduction};
 
 /// Two bodies that collide at one speed. The angle θ from the normal decides the normal velocity
 /// and the impact ratio g_t/g_n = tan θ = ψ μ/α.
@@ -18,8 +18,8 @@ impl Oblique {
     /// The impacts of a pair at a speed in m/s.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: the speed, or a property of the pair, is out of its range.
-    pub fn new(pair: BodyPair, speed_m_per_s: f64) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`]: the speed, or a property of the pair, is out of its range.
+    pub fn new(pair: BodyPair, speed_m_per_s: f64) -> Result<Self, InvalidValue> {
         let kappa = pair.impact(speed_m_per_s, speed_m_per_s)?.contact.kappa();
         Ok(Self { pair, speed_m_per_s, kappa })
     }
@@ -47,7 +47,7 @@ impl Oblique {
     }
 
     /// The contact at ψ, of bodies with another κ at normal incidence.
-    pub(crate) fn at(&self, kappa: f64, psi: f64) -> Result<Contact, InvalidParameter> {
+    pub(crate) fn at(&self, kappa: f64, psi: f64) -> Result<Contact, InvalidValue> {
         let ratio = self.reduction().ratio(psi);
         let normal = self.speed_m_per_s / ratio.hypot(1.0);
         let contact = self.pair.impact(normal, normal * ratio)?.contact;
@@ -58,8 +58,8 @@ impl Oblique {
     /// The contact at an angle in rad.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: the angle is not above 0 and below π/2.
-    pub fn contact(&self, angle_rad: f64) -> Result<Contact, InvalidParameter> {
+    /// [`InvalidValue`]: the angle is not above 0 and below π/2.
+    pub fn contact(&self, angle_rad: f64) -> Result<Contact, InvalidValue> {
         self.at(self.kappa, self.psi(angle_rad))
     }
 }

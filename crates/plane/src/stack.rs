@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use stickslip_model::InvalidParameter;
+use stickslip_model::InvalidValue;
 use stickslip_tracer::{AtlasOptions, Effect, Stack, StackError, StackOptions, Watch};
 
 use crate::atlas::{self, AtlasError, Frame, VerifiedAtlas, itinerary};
@@ -181,9 +181,8 @@ fn follow(
 ) -> Result<Followed, DampingStackError> {
     let first = dampings[0];
     let failed = |damping, source| DampingStackError::Atlas { damping, source };
-    let plane = |damping| {
-        at(damping).plane().map_err(|error: InvalidParameter| failed(damping, error.into()))
-    };
+    let plane =
+        |damping| at(damping).plane().map_err(|error: InvalidValue| failed(damping, error.into()));
     let sample = plane(first)?;
     for &damping in dampings {
         atlas::require_traceable(&plane(damping)?, tolerance)

@@ -3,7 +3,7 @@
 use std::ops;
 
 use rayon::prelude::*;
-use stickslip_model::{Engine, EngineError, InvalidParameter};
+use stickslip_model::{CollisionError, Engine, InvalidValue};
 
 use crate::grid::{Grid, Quantity};
 use crate::tile::{NO_COUNT, NO_EPS_T, Tile};
@@ -13,10 +13,10 @@ use crate::tile::{NO_COUNT, NO_EPS_T, Tile};
 pub enum PointError {
     /// No collision has these parameters.
     #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Parameter(#[from] InvalidValue),
     /// The collision cannot be computed.
     #[error(transparent)]
-    Engine(#[from] EngineError),
+    Engine(#[from] CollisionError),
     /// The grid has no such point.
     #[error("point {index} of a map of {points} points")]
     Outside {

@@ -40,11 +40,10 @@ mod search;
 mod settings;
 mod survey;
 
-use stickslip_model::{InvalidParameter, Law};
+use stickslip_model::{CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
 
-use crate::time_steps::ContactFailure;
 pub use bodies::{Bodies, Values};
 pub use columns::{Column, InvalidColumns, data};
 pub use course::{Boundary, Course};
@@ -52,8 +51,7 @@ pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
 pub use intervals::{Interval, Piece};
 pub use normal::DampingFit;
-pub use search::SearchError;
-pub use settings::{InvalidFit, Settings};
+pub use settings::Settings;
 pub use survey::Survey;
 
 /// The name of the layout of the JSON, with its version.
@@ -214,15 +212,99 @@ pub fn predicted(
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// Settings are out of range.
+    /// A setting or a datum is out of range, or an impact has no scaled parameters.
     #[error(transparent)]
-    Settings(#[from] InvalidFit),
-    /// An impact has no scaled parameters.
-    #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Value(#[from] InvalidValue),
+    /// Some data have errors, but not all.
+    #[error("row {row}: {name} has no error, and others have one; expected all errors, or none")]
+    NoError {
+        /// The row of a datum without error.
+        row: usize,
+        /// The name of the quantity.
+        name: &'static str,
+    },
+    /// Several quantities are fitted together without errors.
+    #[error(
+        "{first} and {second} have no errors; expected errors, which weigh one quantity against the \
+         other, or one quantity"
+    )]
+    Weights {
+        /// The name of a quantity.
+        first: &'static str,
+        /// The name of another one.
+        second: &'static str,
+    },
+    /// There are fewer data than numbers to be fitted.
+    #[error(
+        "{data} data {} for {free} free numbers; expected at least as many data",
+        if *normal { "of eps_n" } else { "of the tangential motion" }
+    )]
+    TooFew {
+        /// The number of data.
+        data: usize,
+        /// The number of free numbers.
+        free: usize,
+        /// Whether these are data of ε_n.
+        normal: bool,
+    },
+    /// Nothing is fitted, or too much.
+    #[error(
+        "{count} free numbers besides the damping; expected 1 or 2 of kappa (or k_t), mu and \
+         tangential_damping, or damping"
+    )]
+    Free {
+        /// How many there are besides the damping.
+        count: usize,
+    },
+    /// A number is to be fitted twice.
+    #[error("{name} is free twice; expected different names")]
+    Twice {
+        /// The name.
+        name: &'static str,
+    },
+    /// A range is not an interval, or out of range.
+    #[error(
+        "the range {low:?} to {high:?} of {name} cannot be used; expected two rising numbers {} 0, \
+         at most {most:?}",
+        if *open { "above" } else { "from" }
+    )]
+    Range {
+        /// The name of the number.
+        name: &'static str,
+        /// Its lower end.
+        low: f64,
+        /// Its upper end.
+        high: f64,
+        /// The largest upper end.
+        most: f64,
+        /// Whether 0 is left out.
+        open: bool,
+    },
+    /// A damping is free where nothing is damped.
+    #[error(
+        "{name} is free, but has no effect without damping; expected a law with damping, and eps_n below 1"
+    )]
+    Undamped {
+        /// The name.
+        name: &'static str,
+    },
+    /// The range of the damping has contacts that never end.
+    #[error("damping up to {high:?} has contacts that never end; expected a range below {most:?}")]
+    Endless {
+        /// The upper end of the range.
+        high: f64,
+        /// Where contacts stop to end.
+        most: f64,
+    },
+    /// The damping is both given and fitted.
+    #[error("eps_n = {value:?} decides the damping, which is free; expected one of the two")]
+    DampingTwice {
+        /// ε_n.
+        value: f64,
+    },
     /// An impact cannot be computed.
     #[error(transparent)]
-    Contact(#[from] ContactFailure),
+    Contact(#[from] CollisionFailure),
     /// The boundaries cannot be traced.
     #[error(transparent)]
     Boundaries(#[from] Box<AtlasError>),
@@ -234,7 +316,34 @@ pub enum FitError {
         /// The least that was reached.
         least: f64,
     },
-    /// A search for a minimum or a zero failed.
-    #[error(transparent)]
-    Search(#[from] SearchError),
+    /// A search has no places to start from.
+    #[error("a search has no places to start from")]
+    NoPlaces,
+    /// Brent's method for a minimum failed.
+    #[error("Brent's method for a minimum failed from {low:?} to {high:?}")]
+    Minimum {
+        /// The beginning of the interval.
+        low: f64,
+        /// Its end.
+        high: f64,
+    },
+    /// Brent's method for a zero failed.
+    #[error(
+        "Brent's method for a zero failed from {low:?} to {high:?}; expected values of two signs \
+         at the ends"
+    )]
+    Zero {
+        /// The beginning of the interval.
+        low: f64,
+        /// Its end.
+        high: f64,
+    },
+    /// The simplex method of Nelder and Mead failed.
+    #[error("the simplex method failed from {start:?} with the sides {sides:?}")]
+    Simplex {
+        /// The place at which it began.
+        start: [f64; 2],
+        /// The sides of the triangle.
+        sides: [f64; 2],
+    },
 }

@@ -51,17 +51,17 @@ mod verification;
 
 use std::fmt;
 
-use stickslip_model::{Collision, Contact, EngineError, InvalidParameter};
+use stickslip_model::{Collision, CollisionError, Contact, InvalidValue};
 use stickslip_plane::CollisionPlane;
 use stickslip_plane::atlas::{AtlasError, divide};
 use stickslip_plane::progress::{Progress, Report, SILENT};
 
 pub use chebyshev::{ACROSS, ALONG};
 #[cfg(feature = "serde")]
-pub use document::{Document, DocumentError, SCHEMA};
-pub use header::{InvalidPrefix, require_prefix};
+pub use document::{Document, SCHEMA};
+pub use header::require_prefix;
 pub use keys::Keys;
-pub use settings::{InvalidTable, Settings, Window};
+pub use settings::{Settings, Window};
 pub use stretch::Stretch;
 pub use table::{Arrays, NO_REGION, Table, Verification};
 
@@ -134,12 +134,12 @@ impl fmt::Display for Place {
 /// Why there is no table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
-    /// Settings are out of range.
+    /// Settings or a document are out of range, or no collision has the parameters of the window.
     #[error(transparent)]
-    Settings(#[from] InvalidTable),
-    /// No collision has the parameters of the window.
-    #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Settings(#[from] InvalidValue),
+    /// The bodies have another contact law.
+    #[error("the bodies have another contact law; expected the paper's, which tables are made for")]
+    Law,
     /// The boundaries of the window cannot be traced.
     #[error(transparent)]
     Atlas(#[from] AtlasError),
@@ -155,7 +155,7 @@ pub enum TableError {
         /// The place of the collision.
         place: Place,
         /// What the engine reports.
-        source: EngineError,
+        source: CollisionError,
     },
     /// The bound is not reached.
     #[error("the bound is not reached: the error is {error:e} at {place}")]
@@ -170,6 +170,14 @@ pub enum TableError {
     CoarseNormal {
         /// The largest error.
         error: f64,
+    },
+    /// A document is not a table: an array contradicts another one.
+    #[error("{name} contradicts the other arrays at element {index}")]
+    Contradiction {
+        /// The array.
+        name: &'static str,
+        /// The first such element.
+        index: usize,
     },
     /// The table has too many strips.
     #[error("more than {most} strips; expected fewer in a smaller window or with a coarser bound")]

@@ -26,13 +26,13 @@ mod settings;
 mod stepped;
 
 use rayon::prelude::*;
-use stickslip_model::{Collision, Contact, Engine, EngineError};
+use stickslip_model::{Collision, CollisionError, CollisionFailure, Contact, Engine, InvalidValue};
 use stickslip_plane::progress::{Progress, Report};
 
 pub use measure::{Errors, Quantity, Row, Status, Worst};
 pub use scheme::Scheme;
 pub use seconds::{Seconds, rayleigh_time_s};
-pub use settings::{InvalidTimeSteps, Settings};
+pub use settings::Settings;
 pub use stepped::{Stepped, step, undamped_contact_time};
 
 /// The name of the layout of the JSON, with its version.
@@ -75,10 +75,10 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<TimeSteps, TimeS
         let collision = Engine::Auto.collide(*contact);
         collision.map(|(collision, _)| collision)
     });
-    let exact: Vec<Result<Collision, EngineError>> = exact.collect();
+    let exact: Vec<Result<Collision, CollisionError>> = exact.collect();
     // The first failure is the same for any number of threads.
     let exact = exact.into_iter().zip(&settings.contacts).map(|(collision, contact)| {
-        collision.map_err(|source| ContactFailure { contact: *contact, source })
+        collision.map_err(|source| CollisionFailure::new(contact, source))
     });
     let exact: Vec<Collision> = exact.collect::<Result<_, _>>()?;
     let done = || progress(Progress::Advance { steps: 1 });
@@ -116,21 +116,8 @@ impl TimeSteps {
 pub enum TimeStepsError {
     /// Settings are out of range.
     #[error(transparent)]
-    Settings(#[from] InvalidTimeSteps),
+    Settings(#[from] InvalidValue),
     /// An impact cannot be computed without steps.
     #[error(transparent)]
-    Contact(#[from] ContactFailure),
-}
-
-/// An impact cannot be computed without steps.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "kappa = {:?}, psi = {:?}, damping = {:?}: {source}",
-    contact.kappa(), contact.psi(), contact.damping()
-)]
-pub struct ContactFailure {
-    /// The impact.
-    pub contact: Contact,
-    /// What the engine reports.
-    pub source: EngineError,
+    Contact(#[from] CollisionFailure),
 }

@@ -106,7 +106,7 @@ impl Collision {
 }
 
 impl Collision {
-    fn course(&self) -> Result<History, stickslip_model::EngineError> {
+    fn course(&self) -> Result<History, stickslip_model::CollisionError> {
         self.engine.history(self.result.contact)
     }
 }

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use serde_json::Value;
 use stickslip_model::{Engine, InvalidChoice, Law, presets};
-use stickslip_solver::{InvalidOption, Statistics};
+use stickslip_solver::Statistics;
 
 use crate::failure::{bad_input, failed};
 
@@ -18,18 +18,11 @@ impl Choice {
         let Self(method, rtol, atol) = self;
         Engine::chosen_for(law, method, *rtol, *atol).map_err(|invalid| {
             bad_input(match invalid {
-                InvalidChoice::Method { name } => {
-                    format!(
-                        "method = {name:?}; expected \"auto\", \"exact\", \"dop853\" or \"dopri5\""
-                    )
-                }
                 InvalidChoice::Unused { name, value } => format!(
                     "{name} = {value:?} has no effect with method = \"exact\"; expected with \
                      \"dop853\" and \"dopri5\" only"
                 ),
-                InvalidChoice::Tolerance(InvalidOption { name, value, expected }) => {
-                    format!("{name} = {value:?} is out of range; expected {expected}")
-                }
+                InvalidChoice::Value(error) => error.to_string(),
             })
         })
     }

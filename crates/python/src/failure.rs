@@ -3,7 +3,7 @@
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::{PyErr, create_exception};
 use stickslip_model::exact::ExactError;
-use stickslip_model::{CollisionError, EngineError, InvalidParameter};
+use stickslip_model::{CollisionError, CollisionFailure, InvalidValue};
 use stickslip_plane::atlas::AtlasError;
 
 create_exception!(
@@ -27,9 +27,9 @@ pub fn failed(error: impl ToString) -> PyErr {
 #[derive(Clone)]
 pub enum Failure {
     /// No collision has these parameters.
-    Parameter(InvalidParameter),
+    Parameter(InvalidValue),
     /// The engine has no result.
-    Engine(EngineError),
+    Engine(CollisionError),
 }
 
 impl Failure {
@@ -39,8 +39,7 @@ impl Failure {
             self,
             Self::Parameter(_)
                 | Self::Engine(
-                    EngineError::Collision(CollisionError::Domain(_))
-                        | EngineError::Exact(ExactError::Domain(_))
+                    CollisionError::Domain(_) | CollisionError::Exact(ExactError::Domain(_))
                 )
         )
     }
@@ -60,16 +59,23 @@ impl Failure {
     }
 }
 
-impl From<InvalidParameter> for Failure {
-    fn from(error: InvalidParameter) -> Self {
+impl From<InvalidValue> for Failure {
+    fn from(error: InvalidValue) -> Self {
         Self::Parameter(error)
     }
 }
 
-impl From<EngineError> for Failure {
-    fn from(error: EngineError) -> Self {
+impl From<CollisionError> for Failure {
+    fn from(error: CollisionError) -> Self {
         Self::Engine(error)
     }
+}
+
+/// The exception for a collision that cannot be computed.
+pub fn of_collision(failure: CollisionFailure) -> PyErr {
+    let CollisionFailure { kappa, psi, damping, source } = failure;
+    let place = format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
+    Failure::from(source).exception(&place)
 }
 
 impl From<Failure> for PyErr {

@@ -10,7 +10,7 @@ use stickslip_practice::fit::{self, Bodies, Column, FitError, Free, Settings, Va
 use crate::arrays::{expect_equal, numbers};
 use crate::background::watched;
 use crate::engines::LawChoice;
-use crate::failure::{Failure, bad_input, failed};
+use crate::failure::{bad_input, failed, of_collision};
 use crate::impacts::BodyPair;
 
 /// What is fitted, the ranges, ε_n, the level, and whether errors are relative.
@@ -100,15 +100,12 @@ impl Scaled {
 
 fn exception(error: FitError) -> PyErr {
     match error {
-        FitError::Contact(failure) => {
-            let contact = &failure.contact;
-            let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
-            let place = format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
-            Failure::from(failure.source).exception(&place)
-        }
-        FitError::Boundaries(_) | FitError::Search(_) => failed(error),
-        FitError::Settings(_) | FitError::Parameter(_) | FitError::Unreachable { .. } => {
-            bad_input(error)
-        }
+        FitError::Contact(failure) => of_collision(failure),
+        FitError::Boundaries(_)
+        | FitError::NoPlaces
+        | FitError::Minimum { .. }
+        | FitError::Zero { .. }
+        | FitError::Simplex { .. } => failed(error),
+        error => bad_input(error),
     }
 }

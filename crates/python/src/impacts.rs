@@ -5,8 +5,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip_model::document::IMPACT;
 use stickslip_model::{
-    Body, Elasticity, Encounter, Forces, ImpactReport, InvalidParameter, Motion, Sphere, Vector3,
-    Wall, WallMotion, quantity,
+    Body, Elasticity, Encounter, Forces, ImpactReport, InvalidValue, Motion, Sphere, Vector3, Wall,
+    WallMotion, quantity,
 };
 use stickslip_practice::fit::Bodies;
 
@@ -154,7 +154,7 @@ impl BodyPair {
 }
 
 impl SphereArguments {
-    fn checked(&self) -> Result<Sphere, InvalidParameter> {
+    fn checked(&self) -> Result<Sphere, InvalidValue> {
         let Self(radius_m, mass_kg, moment, young_modulus_pa, poisson_ratio) = *self;
         let radius_m = quantity::RADIUS.check(radius_m)?;
         let mass_kg = quantity::MASS.check(mass_kg)?;

@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use stickslip_model::{Contact, InvalidParameter, Reduction};
+use stickslip_model::{Contact, InvalidValue, Reduction};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
 use stickslip_plane::gaining;
@@ -123,7 +123,7 @@ impl Atlas {
 }
 
 impl Atlas {
-    fn place(&self, kappa: f64, psi: f64) -> Result<(i64, f64), InvalidParameter> {
+    fn place(&self, kappa: f64, psi: f64) -> Result<(i64, f64), InvalidValue> {
         let located = self.atlas.locate(&Contact::new(kappa, psi, 0.0)?);
         let region = match located.region {
             Ok(region) => i64::try_from(region).unwrap_or(i64::MAX),

@@ -9,7 +9,7 @@ use stickslip_practice::time_steps::{self, Scheme, Settings, TimeStepsError};
 use crate::arrays::{Parameters, Points};
 use crate::background::watched;
 use crate::engines::LawChoice;
-use crate::failure::{Failure, bad_input, failed};
+use crate::failure::{bad_input, failed, of_collision};
 
 /// Errors over impacts and start phases, for each step.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -46,12 +46,7 @@ impl TimeSteps {
         let found = watched(py, threads, progress.as_ref(), work)?;
         found.map(Self).map_err(|error| match error {
             TimeStepsError::Settings(invalid) => bad_input(invalid),
-            TimeStepsError::Contact(failure) => {
-                let contact = &failure.contact;
-                let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
-                let place = format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
-                Failure::from(failure.source).exception(&place)
-            }
+            TimeStepsError::Contact(failure) => of_collision(failure),
         })
     }
 

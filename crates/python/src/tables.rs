@@ -164,7 +164,7 @@ impl RestitutionTable {
         let work = move |report: Report<'_>| tables::run(&settings, report);
         let made = watched(py, threads, progress, work)?;
         made.map(Self).map_err(|error| match error {
-            TableError::Settings(_) | TableError::Parameter(_) => bad_input(error),
+            TableError::Settings(_) | TableError::Law => bad_input(error),
             TableError::Atlas(error) => of_atlas(&error),
             error => failed(error),
         })

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use stickslip_figure::FigureError;
-use stickslip_model::{CollisionError, InvalidParameter};
+use stickslip_model::{CollisionError, CollisionFailure, InvalidValue};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_solver::Outcome;
+use stickslip_studies::StudyError;
 use stickslip_studies::search::SearchError;
-use stickslip_studies::{CollisionFailure, StudyError};
 
 /// Why a part of the reproduction has no result.
 #[derive(Debug, thiserror::Error)]
@@ -28,7 +28,7 @@ pub enum ReproductionError {
     NoCells,
     /// No collision has these parameters.
     #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Parameter(#[from] InvalidValue),
     /// A collision cannot be computed.
     #[error(transparent)]
     Collision(#[from] CollisionFailure),

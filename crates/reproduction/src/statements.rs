@@ -76,14 +76,13 @@ fn test(
 
 #[cfg(test)]
 mod tests {
-    use stickslip_model::{EngineError, exact};
+    use stickslip_model::{CollisionError, CollisionFailure, exact};
     use stickslip_plane::atlas::AtlasError;
     use stickslip_plane::progress::SILENT;
 
     use super::line::{Line, line};
     use super::statement::Stop;
     use super::*;
-    use stickslip_studies::CollisionFailure;
 
     /// Beyond the stiffness that the exact solution accepts.
     const TOO_STIFF: f64 = 2e16;
@@ -139,7 +138,7 @@ mod tests {
             panic!("{error}")
         };
         assert_eq!(kappa, TOO_STIFF);
-        let domain = matches!(source, EngineError::Exact(exact::ExactError::Domain(_)));
+        let domain = matches!(source, CollisionError::Exact(exact::ExactError::Domain(_)));
         assert!(domain, "{source}");
     }
 }

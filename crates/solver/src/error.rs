@@ -1,13 +1,15 @@
 //! Why a run fails.
 
-use crate::options::InvalidOption;
+use stickslip_number::InvalidValue;
+
+use crate::hybrid::Outcome;
 
 /// Why a run failed. Every variant carries the numbers that say where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
     /// An option is out of its range.
     #[error(transparent)]
-    Option(#[from] InvalidOption),
+    Option(#[from] InvalidValue),
     /// The end of the run does not lie after its start, in the direction of the run, or the start
     /// is not finite.
     #[error(
@@ -109,9 +111,26 @@ pub enum RunError {
         /// The size of the last step tried.
         h: f64,
     },
+    /// The run ended before it reached the end of its span or a terminal guard. Only
+    /// [`Run::finished`](crate::Run::finished) makes this an error.
+    #[error("the run ended early, at s = {s}: {outcome:?}")]
+    Unfinished {
+        /// Why the run ended.
+        outcome: Outcome,
+        /// Where the run ended.
+        s: f64,
+    },
 }
 
 impl RunError {
+    /// Nothing if a run with this `outcome` came to a regular end, at `s`.
+    pub(crate) fn unless_regular(outcome: Outcome, s: f64) -> Result<(), Self> {
+        match outcome {
+            Outcome::ReachedEnd | Outcome::EndedByGuard { .. } => Ok(()),
+            outcome => Err(Self::Unfinished { outcome, s }),
+        }
+    }
+
     /// No step from `s`, the last one of size `h`, resolves a guard. `known` says whether it has
     /// values there.
     pub(crate) fn unresolved(guard: usize, (s, h): (f64, f64), known: bool) -> Self {
@@ -134,7 +153,8 @@ impl RunError {
             | Self::Tolerance { s, .. }
             | Self::GuardNotANumber { s, .. }
             | Self::GuardIdenticallyZero { s, .. }
-            | Self::GuardUnresolved { s, .. } => *s = 0.0 - *s,
+            | Self::GuardUnresolved { s, .. }
+            | Self::Unfinished { s, .. } => *s = 0.0 - *s,
         }
         self
     }

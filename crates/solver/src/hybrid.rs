@@ -7,7 +7,7 @@
 mod guard;
 mod readable;
 mod results;
-mod schedule;
+pub(crate) mod schedule;
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub use guard::{Direction, Guard};
 pub use readable::ReadableSystem;
 pub(crate) use readable::constant;
 pub use results::{
-    Grazing, Observer, Outcome, Pole, Preempted, Rest, Run, Statistics, SwitchEvent, Unfinished,
+    Grazing, Observer, Outcome, Pole, Preempted, Rest, Run, Statistics, SwitchEvent,
 };
 pub use schedule::{Schedule, Times};
 

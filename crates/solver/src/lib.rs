@@ -166,25 +166,24 @@ pub use dynamic::{
 pub use error::RunError;
 pub use hybrid::{
     Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Preempted, ReadableSystem,
-    Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times, Unfinished,
+    Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times,
 };
 pub use margin::{
     Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, follow_dynamic, margin,
     margin_dynamic, margins, margins_dynamic,
 };
 pub use method::{
-    Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial,
-    UnknownEmbeddedPair, fit_order,
+    Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial, fit_order,
 };
-pub use options::{InvalidOption, Options, StepSize};
+pub use options::{Options, StepSize};
 pub use runs::{
-    Closures, InvalidTimes, Recorder, Sample, Samples, Segment, Trajectory, Weighted, integrate,
-    run, run_backwards, run_over_switches, run_with, smooth, trajectory,
+    Closures, Recorder, Sample, Samples, Segment, Trajectory, Weighted, integrate, run,
+    run_backwards, run_over_switches, run_with, smooth, trajectory,
 };
 pub use sensitivity::{
     Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities, sensitivities_with,
 };
-pub use stickslip_number::{Enclosure, Interval, Number};
+pub use stickslip_number::{Enclosure, GivenValue, Interval, InvalidValue, Number};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -1,5 +1,7 @@
 //! Options of a run.
 
+use stickslip_number::InvalidValue;
+
 /// How the step size is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepSize {
@@ -83,40 +85,24 @@ impl Options {
     /// Checks every field.
     ///
     /// # Errors
-    /// [`InvalidOption`] names the first field that is out of its range, with its value and the
-    /// range.
-    pub fn validate(&self) -> Result<(), InvalidOption> {
-        let check = |name, value: f64, expected, ok: bool| {
-            if ok { Ok(()) } else { Err(InvalidOption { name, value, expected }) }
-        };
+    /// [`InvalidValue`] names the first field that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
-        check("rtol", self.rtol, "1e-15 to 0.1", (1e-15..=0.1).contains(&self.rtol))?;
-        check("atol", self.atol, "a finite number above 0", positive(self.atol))?;
-        check("max_step", self.max_step, "a number above 0", self.max_step > 0.0)?;
-        check("zeno", self.zeno, "0 to 0.1", (0.0..=0.1).contains(&self.zeno))?;
+        InvalidValue::check("rtol", self.rtol, "1e-15 to 0.1", (1e-15..=0.1).contains(&self.rtol))?;
+        InvalidValue::check("atol", self.atol, "a finite number above 0", positive(self.atol))?;
+        InvalidValue::check("max_step", self.max_step, "a number above 0", self.max_step > 0.0)?;
+        InvalidValue::check("zeno", self.zeno, "0 to 0.1", (0.0..=0.1).contains(&self.zeno))?;
         let instant = self.max_at_one_instant;
-        check("max_at_one_instant", instant as f64, "at least 1", instant > 0)?;
+        InvalidValue::check("max_at_one_instant", instant, "at least 1", instant > 0)?;
         if let Some(scale) = self.guard_scale {
-            check("guard_scale", scale, "a finite number above 0", positive(scale))?;
+            InvalidValue::check("guard_scale", scale, "a finite number above 0", positive(scale))?;
         }
         if let Some(h) = self.first_step {
-            check("first_step", h, "a finite number above 0", positive(h))?;
+            InvalidValue::check("first_step", h, "a finite number above 0", positive(h))?;
         }
         if let StepSize::Fixed(h) = self.step_size {
-            check("fixed step", h, "a finite number above 0", positive(h))?;
+            InvalidValue::check("fixed step", h, "a finite number above 0", positive(h))?;
         }
         Ok(())
     }
-}
-
-/// An option is out of its range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{name} = {value} is out of range; expected {expected}")]
-pub struct InvalidOption {
-    /// The option's name.
-    pub name: &'static str,
-    /// The value that is out of range.
-    pub value: f64,
-    /// The range that is expected.
-    pub expected: &'static str,
 }

@@ -22,12 +22,26 @@ pub mod trajectory;
 mod unlocated;
 mod weighted;
 
+use crate::error::RunError;
+use crate::hybrid::Run;
+
 pub use backwards::run_backwards;
 pub use by_name::run_with;
 pub use closures::Closures;
 pub use runner::run;
-pub use samples::{InvalidTimes, Sample, Samples};
+pub use samples::{Sample, Samples};
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};
 pub use unlocated::run_over_switches;
 pub use weighted::Weighted;
+
+impl<Mode, const N: usize> Run<Mode, N> {
+    /// The run, if it came to a regular end: the end of its span or a terminal guard.
+    ///
+    /// # Errors
+    /// [`RunError::Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
+    /// because the observer stopped it.
+    pub fn finished(self) -> Result<Self, RunError> {
+        RunError::unless_regular(self.outcome, self.s).map(|()| self)
+    }
+}

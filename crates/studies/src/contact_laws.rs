@@ -19,7 +19,6 @@ use crate::error::StudyError;
 use crate::study::Study;
 use law::LawOnPlane;
 
-pub use crate::error::InvalidContactLaws;
 pub use crate::limits::MOST_CELLS;
 pub use settings::{Named, Settings, distinct};
 pub use tables::LAWS;

@@ -16,15 +16,14 @@ mod tables;
 
 use rayon::prelude::*;
 use serde_json::json;
-use stickslip_model::Collision;
+use stickslip_model::{Collision, CollisionFailure};
 use stickslip_plane::progress::{Progress, Report};
 
-use crate::error::{CollisionFailure, StudyError};
+use crate::error::StudyError;
 use crate::study::Study;
 use collisions::Accuracy;
 use series::{ErrorRow, ErrorSeries, Scheme};
 
-pub use crate::error::InvalidConvergence;
 pub use crate::limits::MOST_STIFFNESS;
 pub use measure::{
     Approximation, Coordinates, Deviation, Errors, Spread, Switching, integrate, measure, reference,

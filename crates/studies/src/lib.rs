@@ -34,7 +34,7 @@ pub mod study;
 pub mod three_parameters;
 pub mod unreset;
 
-pub use error::{CollisionFailure, StudyError};
+pub use error::StudyError;
 pub use study::{Cell, Column, Picture, Study, Table};
 
 #[doc = include_str!("../README.md")]

@@ -26,7 +26,6 @@ use limit::{BOUND_FACTOR, Excess};
 use maxima::{LargestRestitution, LargestVelocity, RangeStart};
 use profile::Profile;
 
-pub use crate::error::InvalidStiffSprings;
 pub use settings::Settings;
 
 /// The name of the layout of the JSON, with its version.

@@ -1,10 +1,10 @@
 //! The file of an atlas of any family: how it is made, and how it is read back.
 
 use serde::{Deserialize, Serialize};
+use stickslip_solver::InvalidValue;
 
 use crate::atlas::{Atlas, AtlasOptions, doubtful};
 use crate::curve::{Curve, Vertex};
-use crate::options::InvalidTraceOption;
 use crate::regions::finding::SubdivisionError;
 use crate::regions::region::Region;
 use crate::regions::subdivision::Subdivision;
@@ -112,7 +112,7 @@ pub enum DocumentError {
     },
     /// An option is out of its range.
     #[error("options: {0}")]
-    Option(#[from] InvalidTraceOption),
+    Option(#[from] InvalidValue),
     /// The curves do not make regions.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),

@@ -123,7 +123,7 @@ pub use hybrid::{
     DynamicFamily, DynamicFired, DynamicModeOf, DynamicProblem, DynamicSetting, FamilyError,
     HybridFamily, Itinerary, ModeOf, Problem,
 };
-pub use options::{InvalidTraceOption, TraceError, TraceOptions};
+pub use options::{TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;
 pub use regions::outline::Stretch;
@@ -139,6 +139,7 @@ pub use stack::conditions::MeetingKind;
 pub use stack::document::{LayerDocument, StackDocument};
 pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
+pub use stickslip_solver::InvalidValue;
 pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;
 pub use tracing::count::Count;

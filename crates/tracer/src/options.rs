@@ -1,5 +1,7 @@
 //! The options of a trace, and its errors.
 
+use stickslip_solver::InvalidValue;
+
 use crate::window::{Point, Window};
 
 /// The options of a trace. [`TraceOptions::validate`] checks them when the trace starts.
@@ -61,44 +63,49 @@ impl TraceOptions {
     ///
     /// # Errors
     /// The first field that is out of its range, with its value and the range.
-    pub fn validate(&self) -> Result<(), InvalidTraceOption> {
-        let check = |name, value: f64, expected, ok: bool| {
-            if ok { Ok(()) } else { Err(InvalidTraceOption { name, value, expected }) }
-        };
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         let within = |value: f64, low: f64, high: f64| value > low && value <= high;
-        check("tolerance", self.tolerance, "above 0 to 1e-6", within(self.tolerance, 0.0, 1e-6))?;
-        check(
+        InvalidValue::check(
+            "tolerance",
+            self.tolerance,
+            "above 0 to 1e-6",
+            within(self.tolerance, 0.0, 1e-6),
+        )?;
+        InvalidValue::check(
             "interpolation",
             self.interpolation,
             "10 times the tolerance to 1e-2",
             self.interpolation >= 10.0 * self.tolerance && self.interpolation <= 1e-2,
         )?;
-        check(
+        InvalidValue::check(
             "offset",
             self.offset,
             "10 times the tolerance to 1e-4",
             self.offset >= 10.0 * self.tolerance && self.offset <= 1e-4,
         )?;
-        check("noise", self.noise, "0 to 1e-6", (0.0..=1e-6).contains(&self.noise))?;
-        check("max_step", self.max_step, "above 0 to 0.25", within(self.max_step, 0.0, 0.25))?;
-        check("max_angle", self.max_angle, "above 0 to 0.5", within(self.max_angle, 0.0, 0.5))?;
-        check("beyond", self.beyond, "0 to 1e-2", (0.0..=1e-2).contains(&self.beyond))?;
-        check("cells", self.cells as f64, "2 to 4096", (2..=4096).contains(&self.cells))?;
-        check("max_nodes", self.max_nodes as f64, "at least 2", self.max_nodes >= 2)?;
-        check("max_curves", self.max_curves as f64, "at least 1", self.max_curves >= 1)
+        InvalidValue::check("noise", self.noise, "0 to 1e-6", (0.0..=1e-6).contains(&self.noise))?;
+        InvalidValue::check(
+            "max_step",
+            self.max_step,
+            "above 0 to 0.25",
+            within(self.max_step, 0.0, 0.25),
+        )?;
+        InvalidValue::check(
+            "max_angle",
+            self.max_angle,
+            "above 0 to 0.5",
+            within(self.max_angle, 0.0, 0.5),
+        )?;
+        InvalidValue::check(
+            "beyond",
+            self.beyond,
+            "0 to 1e-2",
+            (0.0..=1e-2).contains(&self.beyond),
+        )?;
+        InvalidValue::check("cells", self.cells, "2 to 4096", (2..=4096).contains(&self.cells))?;
+        InvalidValue::check("max_nodes", self.max_nodes, "at least 2", self.max_nodes >= 2)?;
+        InvalidValue::check("max_curves", self.max_curves, "at least 1", self.max_curves >= 1)
     }
-}
-
-/// An option that is out of its range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{name} is {value}, expected {expected}")]
-pub struct InvalidTraceOption {
-    /// The name of the field.
-    pub name: &'static str,
-    /// The value of the field.
-    pub value: f64,
-    /// The range of valid values.
-    pub expected: &'static str,
 }
 
 /// Why a trace failed.
@@ -106,7 +113,7 @@ pub struct InvalidTraceOption {
 pub enum TraceError<E: std::error::Error + 'static> {
     /// An option is out of its range.
     #[error(transparent)]
-    Option(#[from] InvalidTraceOption),
+    Option(#[from] InvalidValue),
     /// The window has no area, or its corners are not finite.
     #[error("the window from {:?} to {:?} is not a rectangle", window.low.as_slice(), window.high.as_slice())]
     Window {

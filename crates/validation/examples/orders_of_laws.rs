@@ -13,7 +13,7 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use stickslip::model::{
-    Collider, Collision, Contact, Damping, Engine, EngineError, Law, linear, presets,
+    Collider, Collision, CollisionError, Contact, Damping, Engine, Law, linear, presets,
 };
 use stickslip::solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
 
@@ -67,7 +67,7 @@ fn references(law: Law, damping: f64, tangential: f64) -> Result<Vec<Collision>,
     Ok(kept)
 }
 
-fn truth(contact: Contact) -> Result<Collision, EngineError> {
+fn truth(contact: Contact) -> Result<Collision, CollisionError> {
     if has_exact(&contact) {
         Ok(Engine::Exact.collide(contact)?.0)
     } else {

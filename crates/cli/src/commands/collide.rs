@@ -9,8 +9,7 @@ use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_files::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
-use stickslip_model::{Contact, Engine, document};
-use stickslip_studies::CollisionFailure;
+use stickslip_model::{CollisionFailure, Contact, Engine, document};
 
 use crate::error::Failure;
 use crate::output::console::print;

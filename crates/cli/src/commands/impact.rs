@@ -12,8 +12,7 @@ use stickslip_files::output::file::publish;
 use stickslip_files::output::impact_rows::{self, EVENTS};
 use stickslip_files::output::json;
 use stickslip_model::quantity::{self, Quantity};
-use stickslip_model::{Encounter, Engine, ImpactReport, Law, document};
-use stickslip_studies::CollisionFailure;
+use stickslip_model::{CollisionFailure, Encounter, Engine, ImpactReport, Law, document};
 
 use crate::error::Failure;
 use crate::output::console::print;

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use stickslip_files::input::number;
 use stickslip_model::{Engine, InvalidChoice, Law, Tolerances};
-use stickslip_solver::{InvalidOption, Options};
+use stickslip_solver::{InvalidValue, Options};
 
 use crate::error::Failure;
 
@@ -83,9 +83,9 @@ pub fn atol(text: &str) -> Result<f64, String> {
 fn parse(text: &str, options: impl Fn(f64) -> Options) -> Result<f64, String> {
     let expected = |value: f64| match options(value).validate() {
         Ok(()) => None,
-        Err(InvalidOption { expected, .. }) => Some(expected),
+        Err(InvalidValue { expected, .. }) => Some(expected),
     };
-    let range = expected(f64::NAN).unwrap_or("a number");
+    let range = expected(f64::NAN).unwrap_or("a number".into());
     let value = number::parse(text).map_err(|problem| format!("{problem}; expected {range}"))?;
     match expected(value) {
         None => Ok(value),

@@ -1,11 +1,12 @@
 //! Whether the parts of a system fit together. Those of a text do; others may be made by hand.
 
+use stickslip_solver::InvalidValue;
+
 use crate::graph::{Formula, Variable};
-use crate::invalid::InvalidParameters;
 use crate::system::{Next, System};
 
 /// Refuses a system whose parts do not fit together.
-pub(super) fn require(system: &System) -> Result<(), InvalidParameters> {
+pub(super) fn require(system: &System) -> Result<(), InvalidValue> {
     let (n, modes) = (system.components.len(), system.modes.len());
     let otherwise = system.otherwise.map_or(0, |(_, mode)| mode);
     require_below(modes, system.first.max(otherwise), "the first mode")?;
@@ -38,7 +39,7 @@ fn require_known(
     system: &System,
     formulas: &[Formula],
     components: Option<usize>,
-) -> Result<(), InvalidParameters> {
+) -> Result<(), InvalidValue> {
     for formula in formulas {
         require_below(system.graph.len(), formula.index(), "a formula")?;
     }
@@ -58,10 +59,10 @@ fn require_known(
     Ok(())
 }
 
-fn require_below(count: usize, place: usize, what: &str) -> Result<(), InvalidParameters> {
+fn require_below(count: usize, place: usize, what: &'static str) -> Result<(), InvalidValue> {
     if place < count { Ok(()) } else { broken(what, place, "one of those that the system has") }
 }
 
-fn broken(what: &str, value: usize, expected: &'static str) -> Result<(), InvalidParameters> {
-    Err(InvalidParameters::Value { what: what.to_owned(), value: value as f64, expected })
+fn broken(what: &'static str, value: usize, expected: &'static str) -> Result<(), InvalidValue> {
+    Err(InvalidValue::new(what, value, expected))
 }

@@ -1,6 +1,6 @@
 //! Modes that slide along a surface, and runs that go on behind an accumulation.
 
-use stickslip_expression::{By, InvalidParameters, Recording, System, SystemFamily};
+use stickslip_expression::{By, InvalidValue, Recording, System, SystemFamily};
 use stickslip_solver::sliding::{SampledFilippov, Side, TwoFields};
 use stickslip_solver::{Dop853, DynamicStart, EmbeddedPair, Options, Outcome, run_dynamic};
 
@@ -73,7 +73,8 @@ fn a_run_starts_on_either_side_of_a_surface() {
         assert_eq!(modes(&belt, &found)[0], first);
     }
     let family = SystemFamily::new(&belt, [0, 1], &belt.values(), None, Options::default());
-    assert_eq!(family.err(), Some(InvalidParameters::FirstMode { name: "belt".to_owned() }));
+    let expected = "one on which the first mode does not depend";
+    assert_eq!(family.err(), Some(InvalidValue::new("parameter", "belt", expected)));
 }
 
 #[test]

@@ -62,8 +62,14 @@ fn parameters_are_given_when_it_runs() {
     let slow = system.with(&[0.25, 1.0, 0.6]).expect("parameters");
     assert!((run(&slow).1[0].s - 4.0).abs() < 1e-12);
     let error = |values: &[f64]| system.with(values).unwrap_err().to_string();
-    assert_eq!(error(&[1.0]), "there are 1 parameters; expected 3: belt, static, kinetic");
-    assert_eq!(error(&[1.0, f64::NAN, 1.0]), "static = NaN; expected a finite number");
+    assert_eq!(
+        error(&[1.0]),
+        "the number of parameters = 1 is out of range; expected 3: belt, static, kinetic"
+    );
+    assert_eq!(
+        error(&[1.0, f64::NAN, 1.0]),
+        "static = NaN is out of range; expected a finite number"
+    );
 }
 
 /// What is common to modes stands above them; a prime is the derivative along the flow.

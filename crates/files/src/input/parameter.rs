@@ -1,5 +1,7 @@
 //! The parameters of a collision: their names and ranges on the command line and in files.
 
+use std::borrow::Cow;
+
 use stickslip_model::quantity::Quantity;
 use stickslip_model::{Contact, Law, quantity};
 
@@ -53,7 +55,7 @@ impl Parameter {
     ///
     /// # Errors
     /// What is expected.
-    pub fn check(self, value: f64) -> Result<f64, &'static str> {
+    pub fn check(self, value: f64) -> Result<f64, Cow<'static, str>> {
         let contact = match self {
             Self::Kappa => Contact::new(value, 1.0, 0.0),
             Self::Psi => Contact::new(1.0, value, 0.0),
@@ -64,7 +66,7 @@ impl Parameter {
             Self::Mu => return quantity::FRICTION.check(value).map_err(|error| error.expected),
             Self::Ratio => {
                 let ok = value > 0.0 && value.is_finite();
-                return if ok { Ok(value) } else { Err("a finite number above 0") };
+                return if ok { Ok(value) } else { Err("a finite number above 0".into()) };
             }
             Self::Alpha => return quantity::INERTIA.check(value).map_err(|error| error.expected),
         };
@@ -72,9 +74,9 @@ impl Parameter {
     }
 
     /// The range, for messages.
-    fn expected(self) -> &'static str {
+    fn expected(self) -> Cow<'static, str> {
         // NaN is in no range, so that each parameter answers here.
-        self.check(f64::NAN).err().unwrap_or("a finite number")
+        self.check(f64::NAN).err().unwrap_or("a finite number".into())
     }
 }
 
@@ -83,13 +85,14 @@ impl Parameter {
 /// # Errors
 /// [`BadValue`]: not a number, or out of the quantity's range.
 pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, BadValue> {
-    let expected = quantity.expected;
-    let value = number::parse(text).map_err(|problem| BadValue::Number { problem, expected })?;
+    let expected = Cow::from(quantity.expected);
+    let value = number::parse(text)
+        .map_err(|problem| BadValue::Number { problem, expected: expected.clone() })?;
     quantity.check(value).map_err(|_| BadValue::Range { expected })
 }
 
 /// The reason why a text is not the value of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadValue {
     /// The text is not a number.
     #[error("{problem}; expected {expected}, {SYNTAX}")]
@@ -97,12 +100,12 @@ pub enum BadValue {
         /// What is wrong with the text.
         problem: NotANumber,
         /// What is expected.
-        expected: &'static str,
+        expected: Cow<'static, str>,
     },
     /// The number is out of range.
     #[error("out of range; expected {expected}")]
     Range {
         /// What is expected.
-        expected: &'static str,
+        expected: Cow<'static, str>,
     },
 }

@@ -1,6 +1,6 @@
 //! The sources of the parameters of a contact: options, or columns of a file.
 
-use stickslip_model::{Contact, InvalidParameter, Law, Reduction};
+use stickslip_model::{Contact, InvalidValue, Law, Reduction};
 
 use crate::input::parameter::{BadValue, Parameter};
 
@@ -149,17 +149,19 @@ impl Recipe {
         let contact = Contact::new(value(self.kappa)?, psi, value(self.damping)?);
         contact
             .and_then(|contact| contact.with_law(self.law, tangential_damping))
-            .map_err(ValueError::Contact)
+            .map_err(ValueError::Value)
     }
 }
 
 /// ψ at the impact ratio `ratio`.
 ///
 /// # Errors
-/// [`ValueError::Psi`]: ψ is out of its range, although the ratio, μ and α are in theirs.
+/// [`ValueError::Value`]: ψ is out of its range, although the ratio, μ and α are in theirs.
 pub fn reduced(reduction: &Reduction, ratio: f64) -> Result<f64, ValueError> {
     let psi = reduction.psi(ratio);
-    Parameter::Psi.check(psi).map_err(|expected| ValueError::Psi { psi, expected })
+    Parameter::Psi.check(psi).map_err(|expected| {
+        ValueError::Value(InvalidValue::new("psi = ratio·alpha/mu", psi, expected))
+    })
 }
 
 /// The reason why options, or options and columns, do not make a recipe.
@@ -196,17 +198,9 @@ pub enum ValueError {
         /// What is wrong with it.
         problem: BadValue,
     },
-    /// The ratio, α and μ are in their ranges, but the ψ that they make is not.
-    #[error("psi = ratio·alpha/mu = {psi:?} is out of range; expected {expected}")]
-    Psi {
-        /// The value of ψ.
-        psi: f64,
-        /// What is expected.
-        expected: &'static str,
-    },
-    /// Options give a value that is out of its range.
+    /// Options give a value that is out of its range, or ratio, α and μ make such a ψ.
     #[error(transparent)]
-    Contact(InvalidParameter),
+    Value(#[from] InvalidValue),
 }
 
 /// `text` as it is shown in messages: in quotation marks, on one line, and not too long.

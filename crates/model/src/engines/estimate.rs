@@ -3,8 +3,8 @@
 use stickslip_contact::{Collision, Regime};
 use stickslip_exact::exact;
 
-use super::integrator::CollisionError;
-use super::{Engine, EngineError, Tolerances};
+use super::error::CollisionError;
+use super::{Engine, Tolerances};
 
 /// How good a collision is.
 ///
@@ -60,9 +60,9 @@ impl Engine {
     ///
     /// # Errors
     /// As [`Self::collide`].
-    pub fn estimate(&self, collision: &Collision) -> Result<Estimate, EngineError> {
+    pub fn estimate(&self, collision: &Collision) -> Result<Estimate, CollisionError> {
         let contact = collision.contact;
-        contact.require_paper("the estimate").map_err(CollisionError::Law)?;
+        contact.require_paper("the estimate")?;
         let engine = self.resolved(&contact);
         let distance = exact::distance(&contact)?;
         let (difference, agrees) = match engine {

@@ -4,9 +4,9 @@ use stickslip_contact::domain::OutOfDomain;
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{DAMPING, STATE, T, U};
-use stickslip_contact::{Collision, Contact, EnergyLedger, OtherLaw, Regime};
+use stickslip_contact::{Collision, Contact, EnergyLedger, Regime};
 use stickslip_solver::{
-    EmbeddedPair, HybridSystem, Observer, Options, Outcome, RunError, Start, Statistics, run_with,
+    EmbeddedPair, HybridSystem, Observer, Options, Outcome, Start, Statistics, run_with,
 };
 
 mod account;
@@ -16,6 +16,7 @@ mod refine;
 mod reversals;
 
 use super::domain;
+use super::error::CollisionError;
 use super::history::{Course, Followed, History, Record};
 use account::{Account, Observed};
 
@@ -342,26 +343,4 @@ impl Collider {
         }
         Ok(options)
     }
-}
-
-/// The reason why a collision could not be integrated.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CollisionError {
-    /// The contact is out of the integrator's range.
-    #[error(transparent)]
-    Domain(#[from] OutOfDomain),
-    /// The integration failed.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The contact has another law than the paper's.
-    #[error(transparent)]
-    Law(#[from] OtherLaw),
-    /// The contact did not end.
-    #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
-    Unfinished {
-        /// The reason why the run stopped.
-        outcome: Outcome,
-        /// Scaled time reached.
-        time: f64,
-    },
 }

@@ -16,7 +16,8 @@ use stickslip_contact::regularized::equations::Parameter;
 use stickslip_contact::{Contact, Regime};
 use stickslip_solver::{Change, Outcome, Start, State, SwitchSensitivity, sensitivities_with};
 
-use super::integrator::{Collider, CollisionError};
+use super::error::CollisionError;
+use super::integrator::Collider;
 
 /// A result of a collision with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use stickslip_solver::{
     Direction, Dop853, Guard, Number, Options, Outcome, ReadableSystem, Start, State, run,
 };
 
-use crate::engines::integrator::CollisionError;
+use crate::engines::error::CollisionError;
 
 /// ε_t of pure Coulomb sliding, max(0, 1 − (1 + ε_n)/ψ), which is max(0, 1 − μ(1 + ε_n)/α ·
 /// g_n/g_t).

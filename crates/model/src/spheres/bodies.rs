@@ -1,6 +1,6 @@
 //! Spheres, walls and their materials.
 
-use stickslip_contact::InvalidParameter;
+use stickslip_contact::InvalidValue;
 
 use super::quantity;
 
@@ -36,8 +36,8 @@ impl Elasticity {
     /// Checks both constants.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidParameter> {
+    /// [`InvalidValue`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         quantity::YOUNG_MODULUS.check(self.young_modulus_pa)?;
         quantity::POISSON_RATIO.check(self.poisson_ratio)?;
         Ok(())
@@ -95,8 +95,8 @@ impl Sphere {
     /// Checks all quantities.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidParameter> {
+    /// [`InvalidValue`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         quantity::RADIUS.check(self.radius_m)?;
         quantity::MASS.check(self.mass_kg)?;
         quantity::MOMENT_OF_INERTIA.check(self.moment_of_inertia_kg_m2)?;
@@ -124,8 +124,8 @@ impl Body {
     /// Checks all quantities.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidParameter> {
+    /// [`InvalidValue`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         match self {
             Self::Sphere(sphere) => sphere.validate(),
             Self::Wall(Wall { elasticity }) => elasticity.map_or(Ok(()), |e| e.validate()),

@@ -5,7 +5,7 @@
 //! (12).
 
 use nalgebra::Vector3;
-use stickslip_contact::{Contact, InvalidParameter};
+use stickslip_contact::{Contact, InvalidValue};
 
 use super::bodies::{Body, Sphere, Wall};
 use super::forces::Forces;
@@ -283,11 +283,11 @@ impl Encounter {
 }
 
 /// The reason why two bodies do not collide.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EncounterError {
     /// A quantity is out of its range.
     #[error(transparent)]
-    Invalid(#[from] InvalidParameter),
+    Invalid(#[from] InvalidValue),
     /// The bodies are apart, or overlap.
     #[error(
         "the {name} = {value_m} m: the bodies {}; expected {touching_m} m, within {TOUCH:e} of it",

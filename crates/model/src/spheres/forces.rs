@@ -1,6 +1,6 @@
 //! Contact laws in SI units: the constants that belong to a law, and what they mean.
 
-use stickslip_contact::{Damping, InvalidParameter, Law, Normal, Tangential};
+use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
 
 use super::quantity::{self, Quantity};
 use super::surface::Surface;
@@ -65,11 +65,11 @@ enum Dashpot {
 }
 
 /// Constants that do not fit a law.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidForces {
     /// A constant is out of its range.
     #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Parameter(#[from] InvalidValue),
     /// A constant is missing.
     #[error("{name} is missing; expected in this law: {expected}")]
     Missing {
@@ -232,7 +232,7 @@ fn twice(first: &Quantity, second: &Quantity) -> InvalidForces {
     InvalidForces::Twice { first: first.name, second: second.name }
 }
 
-fn checked(quantity: &Quantity, value: Option<f64>) -> Result<Option<f64>, InvalidParameter> {
+fn checked(quantity: &Quantity, value: Option<f64>) -> Result<Option<f64>, InvalidValue> {
     value.map(|value| quantity.check(value)).transpose()
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip_contact::InvalidParameter;
+use stickslip_contact::InvalidValue;
 
 /// A quantity in SI units: its name, which contains the unit, and its range.
 ///
@@ -12,7 +12,7 @@ use stickslip_contact::InvalidParameter;
 /// assert_eq!(quantity::RADIUS.check(0.02)?, 0.02);
 /// let error = quantity::RADIUS.check(-0.02).unwrap_err().to_string();
 /// assert_eq!(error, "radius_m = -0.02 is out of range; expected a finite number above 0, in m");
-/// # Ok::<(), stickslip_model::InvalidParameter>(())
+/// # Ok::<(), stickslip_model::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Quantity {
@@ -96,8 +96,8 @@ impl Quantity {
     /// `value`, if it is in the range.
     ///
     /// # Errors
-    /// [`InvalidParameter`] with the quantity's name, the value and the range.
-    pub fn check(&self, value: f64) -> Result<f64, InvalidParameter> {
+    /// [`InvalidValue`] with the quantity's name, the value and the range.
+    pub fn check(&self, value: f64) -> Result<f64, InvalidValue> {
         let ok = match self.range {
             Range::Positive => value > 0.0,
             Range::NotNegative => value >= 0.0,
@@ -105,11 +105,8 @@ impl Quantity {
             Range::Share => value > 0.0 && value <= 1.0,
             Range::Acute => (0.0..FRAC_PI_2).contains(&value),
         };
-        if ok && value.is_finite() {
-            Ok(value)
-        } else {
-            Err(InvalidParameter { name: self.name, value, expected: self.expected })
-        }
+        InvalidValue::check(self.name, value, self.expected, ok && value.is_finite())?;
+        Ok(value)
     }
 }
 

@@ -3,7 +3,7 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
-use stickslip_contact::{Contact, Damping, InvalidParameter, Law, Normal, Tangential};
+use stickslip_contact::{Contact, Damping, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::{Body, Material, Sphere};
 use super::forces::Forces;
@@ -22,7 +22,7 @@ const POSITIVE: &str = "a finite number above 0";
 /// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
 /// let impact = pair.impact(20.0, 4.0)?;
 /// assert!((impact.largest_normal_force_n() / 146.4e3 - 1.0).abs() < 1e-3);
-/// # Ok::<(), stickslip_model::InvalidParameter>(())
+/// # Ok::<(), stickslip_model::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -60,12 +60,12 @@ impl BodyPair {
     /// The paper's law has a [`Surface`], other laws have [`Forces`].
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first quantity or result that is out of its range.
+    /// [`InvalidValue`] names the first quantity or result that is out of its range.
     pub fn new(
         sphere: &Sphere,
         other: &Body,
         forces: impl Into<Forces>,
-    ) -> Result<Self, InvalidParameter> {
+    ) -> Result<Self, InvalidValue> {
         let forces = forces.into();
         sphere.validate()?;
         other.validate()?;
@@ -104,9 +104,7 @@ impl BodyPair {
             ("stiffness_ratio", pair.stiffness_ratio),
             ("alpha", pair.alpha),
         ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(InvalidParameter { name, value, expected: POSITIVE });
-            }
+            InvalidValue::check(name, value, POSITIVE, value > 0.0 && value.is_finite())?;
         }
         Ok(pair)
     }
@@ -114,12 +112,12 @@ impl BodyPair {
     /// The pair of two equal homogeneous spheres of radius `radius_m`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first quantity that is out of its range.
+    /// [`InvalidValue`] names the first quantity that is out of its range.
     pub fn equal_spheres(
         radius_m: f64,
         material: &Material,
         surface: &Surface,
-    ) -> Result<Self, InvalidParameter> {
+    ) -> Result<Self, InvalidValue> {
         quantity::DENSITY.check(material.density_kg_per_m3)?;
         let sphere = Sphere::homogeneous(radius_m, material);
         Self::new(&sphere, &Body::Sphere(sphere), surface)
@@ -151,19 +149,17 @@ impl BodyPair {
     /// surfaces at the contact.
     ///
     /// # Errors
-    /// [`InvalidParameter`] if a velocity is not positive and finite, or if the scaled parameters
+    /// [`InvalidValue`] if a velocity is not positive and finite, or if the scaled parameters
     /// leave the range of numbers.
     pub fn impact(
         &self,
         normal_m_per_s: f64,
         tangential_m_per_s: f64,
-    ) -> Result<Impact, InvalidParameter> {
+    ) -> Result<Impact, InvalidValue> {
         for (name, value) in
             [("normal_m_per_s", normal_m_per_s), ("tangential_m_per_s", tangential_m_per_s)]
         {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(InvalidParameter { name, value, expected: POSITIVE });
-            }
+            InvalidValue::check(name, value, POSITIVE, value > 0.0 && value.is_finite())?;
         }
         let Self { law, alpha, .. } = *self;
         let beta = self.elastic_constant / self.effective_mass_kg;

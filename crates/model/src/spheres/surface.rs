@@ -1,6 +1,6 @@
 //! The surfaces of two bodies.
 
-use stickslip_contact::InvalidParameter;
+use stickslip_contact::InvalidValue;
 
 use super::quantity;
 
@@ -20,8 +20,8 @@ impl Surface {
     /// Checks all quantities.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidParameter> {
+    /// [`InvalidValue`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         quantity::FRICTION.check(self.friction)?;
         quantity::TANGENTIAL_STIFFNESS.check(self.tangential_stiffness_kg_per_s2)?;
         quantity::DAMPING_TIME.check(self.damping_time_s)?;

@@ -1,6 +1,6 @@
 //! Why a window has no atlas.
 
-use stickslip_model::{CollisionError, InvalidParameter, OutOfDomain};
+use stickslip_model::{CollisionError, InvalidValue, OutOfDomain};
 use stickslip_tracer::{SubdivisionError, TraceError, VerifyError};
 
 use crate::family::{CollisionFamilyError, CollisionPlane};
@@ -11,7 +11,7 @@ use crate::sheet::TooNarrow;
 pub enum AtlasError {
     /// No collision has the parameters of the window.
     #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Parameter(#[from] InvalidValue),
     /// The window is too narrow.
     #[error(transparent)]
     Narrow(#[from] TooNarrow),
@@ -59,7 +59,7 @@ pub enum AtlasError {
 pub enum LabelError {
     /// No collision has these parameters.
     #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
+    Parameter(#[from] InvalidValue),
     /// The integration failed.
     #[error(transparent)]
     Collision(#[from] CollisionError),

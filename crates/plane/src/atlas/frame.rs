@@ -1,6 +1,6 @@
 //! The window of an atlas.
 
-use stickslip_model::{InvalidParameter, Law, Reduction};
+use stickslip_model::{InvalidValue, Law, Reduction};
 use stickslip_tracer::{Point, Window};
 
 use crate::chart::Chart;
@@ -83,8 +83,8 @@ impl Frame {
     /// The collisions in the window.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: no collision has these values.
-    pub fn plane(&self) -> Result<CollisionPlane, InvalidParameter> {
+    /// [`InvalidValue`]: no collision has these values.
+    pub fn plane(&self) -> Result<CollisionPlane, InvalidValue> {
         let Self { kappa, psi, damping, .. } = *self;
         CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)?
             .with_law(self.law, self.tangential_damping)

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use stickslip_model::exact;
 use stickslip_model::regularized::SAME_SIDE;
-use stickslip_model::{Contact, InvalidParameter};
+use stickslip_model::{Contact, InvalidValue};
 use stickslip_plane::atlas::{Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, stack};
@@ -66,7 +66,7 @@ fn changes_lead_from_one_atlas_to_the_next() {
 /// Where a region is born, a collision beside the place has its switches a little later, and none
 /// has them before.
 #[test]
-fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidParameter> {
+fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidValue> {
     let mut tried = 0;
     for change in &STACK.changes {
         let Some(meeting) = &change.meeting else { continue };
@@ -74,7 +74,7 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
         assert!(low < meeting.damping && meeting.damping < high);
         for effect in change.effects.iter().filter(|effect| effect.effect == "born") {
             tried += 1;
-            let seen = |damping: f64| -> Result<bool, InvalidParameter> {
+            let seen = |damping: f64| -> Result<bool, InvalidValue> {
                 for (i, j) in (-60..=60).flat_map(|i| (-60..=60).map(move |j| (i, j))) {
                     let kappa = meeting.kappa * (1.0 + 1e-4 * f64::from(i));
                     let psi = meeting.psi * (1.0 + 1e-4 * f64::from(j));
@@ -100,17 +100,17 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
 /// atlases closer than about 1e-4 to the damping do not tell. P, D and W vanish where the turns
 /// meet.
 #[test]
-fn a_region_dies_in_a_swallowtail() -> Result<(), InvalidParameter> {
+fn a_region_dies_in_a_swallowtail() -> Result<(), InvalidValue> {
     dies_in_a_swallowtail((1.0, 5.0), (0.5, 1.0))
 }
 
 #[test]
 #[ignore = "long; .ci/run --long runs it"]
-fn a_region_dies_in_a_swallowtail_of_a_wider_window() -> Result<(), InvalidParameter> {
+fn a_region_dies_in_a_swallowtail_of_a_wider_window() -> Result<(), InvalidValue> {
     dies_in_a_swallowtail((0.8, 12.0), (0.2, 1.5))
 }
 
-fn dies_in_a_swallowtail(kappa: (f64, f64), psi: (f64, f64)) -> Result<(), InvalidParameter> {
+fn dies_in_a_swallowtail(kappa: (f64, f64), psi: (f64, f64)) -> Result<(), InvalidValue> {
     let window = frame(kappa, psi);
     let tolerance = window.tolerances().usual;
     let stack = stack(window, &[0.41, 0.4108, 0.412], tolerance, SILENT).unwrap();

@@ -89,7 +89,7 @@ fn a_grid_with_all_results_has_no_failure() {
 fn a_parameter_that_no_collision_can_have_is_named() {
     let grid = grid((0.0, 20.0), (0.0, 2.0), -1.0);
     let error = point(&grid, Engine::Auto, 0).unwrap_err();
-    assert!(matches!(error, PointError::Parameter(invalid) if invalid.value == -1.0), "{error}");
+    assert!(matches!(error, PointError::Parameter(ref it) if it.value == (-1.0).into()), "{error}");
     let mut failures = FailureCount::default();
     failures.add(0, &compute(&grid, Engine::Auto, 0..grid.points()));
     assert_eq!(failures.failed(&grid, Engine::Auto).unwrap().points, grid.points());

@@ -1,8 +1,6 @@
 //! The bodies of a fit, and the numbers that may be fitted.
 
-use stickslip_model::{
-    BodyPair, InvalidParameter, Law, Normal, Sphere, Surface, Tangential, quantity,
-};
+use stickslip_model::{BodyPair, InvalidValue, Law, Normal, Sphere, Surface, Tangential, quantity};
 
 /// Two bodies whose surfaces are fitted; the second one is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +42,8 @@ impl Bodies {
     /// have the same speed, which is 1.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: α is not above 0 and at most 1.
-    pub fn scaled(law: Law, alpha: f64, values: &Values) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`]: α is not above 0 and at most 1.
+    pub fn scaled(law: Law, alpha: f64, values: &Values) -> Result<Self, InvalidValue> {
         let alpha = quantity::INERTIA.check(alpha)?;
         // With g_n = 1 the units of mass, length and time are 1.
         let surface = Surface {
@@ -73,7 +71,7 @@ impl Bodies {
     }
 
     /// The units of a speed.
-    pub(super) fn units(&self, speed_m_per_s: f64) -> Result<Units, InvalidParameter> {
+    pub(super) fn units(&self, speed_m_per_s: f64) -> Result<Units, InvalidValue> {
         let surface = Surface {
             friction: 1.0,
             tangential_stiffness_kg_per_s2: 1.0,

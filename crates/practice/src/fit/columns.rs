@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use stickslip_model::InvalidValue;
+
 use super::data::{Datum, Measured};
 
 /// A named column, in which values may be missing.
@@ -121,8 +123,12 @@ pub fn data(
             let at = |column: &Column| column.values.get(index).copied().flatten();
             let Some(value) = at(found) else { continue };
             if quantity == Measured::ReboundAngle && !quantity.allows(value * unit) {
-                let (name, degrees) = (found.name.clone(), unit != 1.0);
-                return Err(InvalidColumns::ReboundAngle { row, name, value, degrees });
+                let expected = if unit == 1.0 {
+                    "an angle between -π/2 and π/2"
+                } else {
+                    "an angle between -90 and 90 degrees"
+                };
+                return Err(InvalidValue::new(in_row(row, found), value, expected).into());
             }
             let (normal_m_per_s, tangential_m_per_s) = impacts.at(index, row)?;
             let error = column(Meaning::Error(quantity, unit)).and_then(at);
@@ -190,8 +196,12 @@ impl<'a> Impacts<'a> {
                 let value = number(angle)?;
                 let radians = value * unit;
                 if !(0.0..FRAC_PI_2).contains(&radians) {
-                    let (name, degrees) = (angle.name.clone(), *unit != 1.0);
-                    return Err(InvalidColumns::Angle { row, name, value, degrees });
+                    let expected = if *unit == 1.0 {
+                        "an angle from 0 to below π/2"
+                    } else {
+                        "an angle from 0 to below 90 degrees"
+                    };
+                    return Err(InvalidValue::new(in_row(row, angle), value, expected).into());
                 }
                 let speed = match (speed, all) {
                     (Some(column), _) => number(column)?,
@@ -202,6 +212,10 @@ impl<'a> Impacts<'a> {
             }
         }
     }
+}
+
+fn in_row(row: usize, column: &Column) -> String {
+    format!("row {row}: {}", column.name)
 }
 
 /// Columns do not describe measured impacts.
@@ -260,33 +274,6 @@ pub enum InvalidColumns {
         name: String,
     },
     /// An angle is out of range.
-    #[error(
-        "row {row}: {name} = {value:?} is out of range; expected an angle from 0 to below {}",
-        if *degrees { "90 degrees" } else { "π/2" }
-    )]
-    Angle {
-        /// The row.
-        row: usize,
-        /// The name of the column.
-        name: String,
-        /// The angle.
-        value: f64,
-        /// Whether it is in degrees.
-        degrees: bool,
-    },
-    /// A rebound angle is out of range.
-    #[error(
-        "row {row}: {name} = {value:?} is out of range; expected an angle between {}",
-        if *degrees { "-90 and 90 degrees" } else { "-π/2 and π/2" }
-    )]
-    ReboundAngle {
-        /// The row.
-        row: usize,
-        /// The name of the column.
-        name: String,
-        /// The angle.
-        value: f64,
-        /// Whether it is in degrees.
-        degrees: bool,
-    },
+    #[error(transparent)]
+    Angle(#[from] InvalidValue),
 }

@@ -1,13 +1,12 @@
 //! The fit as a function of the angle, and where the switches change along it.
 
-use stickslip_model::Engine;
+use stickslip_model::{CollisionFailure, Engine};
 use stickslip_plane::{Oblique, Range};
 
 use super::FitError;
 use super::bodies::{Bodies, Units, Values};
 use super::data::{Datum, Measured};
 use super::problem::predicted_at;
-use crate::time_steps::ContactFailure;
 
 /// The best fit at all angles, at one speed.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +75,7 @@ impl Course {
         let itinerary = |ends: &[f64]| {
             let contact = oblique.contact(f64::midpoint(ends[0], ends[1]))?;
             let found = Engine::Auto.collide(contact);
-            let (collision, _) = found.map_err(|source| ContactFailure { contact, source })?;
+            let (collision, _) = found.map_err(|source| CollisionFailure::new(&contact, source))?;
             Ok(collision.itinerary())
         };
         let itineraries: Result<Vec<String>, FitError> = ends.windows(2).map(itinerary).collect();

@@ -1,6 +1,6 @@
 //! The damping, which follows from the normal motion alone.
 
-use stickslip_model::{Contact, Engine};
+use stickslip_model::{CollisionFailure, Contact, Engine};
 
 use super::FitError;
 use super::axis::Axis;
@@ -9,9 +9,7 @@ use super::free::Free;
 use super::intervals::{Interval, interval, threshold};
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
-use super::search::SearchError;
 use super::settings::Settings;
-use crate::time_steps::ContactFailure;
 
 /// The fit of the damping to ε_n.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +48,7 @@ pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<Dampin
         bottoms.push((bottom.values.damping, bottom.misfit));
     }
     let best = bottoms.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
-    let (damping, misfit) = best.ok_or(SearchError::NoPlaces)?;
+    let (damping, misfit) = best.ok_or(FitError::NoPlaces)?;
     let estimated_errors = settings.estimates_errors(true);
     let threshold = threshold(misfit, settings.level, (data.len(), 1), estimated_errors);
     let interval = interval(&lines, &found, bottoms.into_iter(), threshold)?;
@@ -64,7 +62,7 @@ pub fn eps_n(bodies: &Bodies, damping: f64) -> Result<f64, FitError> {
     // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(bodies.pair.law, 0.0)?;
     let found = Engine::Auto.collide(contact);
-    let (collision, _) = found.map_err(|source| ContactFailure { contact, source })?;
+    let (collision, _) = found.map_err(|source| CollisionFailure::new(&contact, source))?;
     Ok(collision.eps_n)
 }
 

@@ -1,11 +1,10 @@
 //! What the model says of the data.
 
-use stickslip_model::{Collider, Collision, Contact, Engine};
+use stickslip_model::{Collider, Collision, CollisionFailure, Contact, Engine};
 
 use super::FitError;
 use super::bodies::{Bodies, Units, Values};
 use super::data::{Datum, Measured};
-use crate::time_steps::ContactFailure;
 
 /// Some of the data, and the bodies.
 #[derive(Clone, Debug)]
@@ -81,7 +80,7 @@ impl Problem {
             let collision = collision.get_or_insert_with(|| Collision::before(contact));
             Engine::Auto
                 .collide_into(contact, collision)
-                .map_err(|source| ContactFailure { contact, source })?;
+                .map_err(|source| CollisionFailure::new(&contact, source))?;
             let collided = self.collided(impact, collision.eps_n, collision.eps_t());
             predicted.extend(impact.quantities.iter().map(|quantity| collided.value(*quantity)));
         }

@@ -9,41 +9,6 @@ use argmin::solver::neldermead::NelderMead;
 
 use super::FitError;
 
-/// Why a search has no result.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SearchError {
-    /// A search has no places to start from.
-    #[error("a search has no places to start from")]
-    NoPlaces,
-    /// Brent's method for a minimum failed.
-    #[error("Brent's method for a minimum failed from {low:?} to {high:?}")]
-    Minimum {
-        /// The beginning of the interval.
-        low: f64,
-        /// Its end.
-        high: f64,
-    },
-    /// Brent's method for a zero failed.
-    #[error(
-        "Brent's method for a zero failed from {low:?} to {high:?}; expected values of two signs \
-         at the ends"
-    )]
-    Zero {
-        /// The beginning of the interval.
-        low: f64,
-        /// Its end.
-        high: f64,
-    },
-    /// The simplex method of Nelder and Mead failed.
-    #[error("the simplex method failed from {start:?} with the sides {sides:?}")]
-    Simplex {
-        /// The place at which it began.
-        start: [f64; 2],
-        /// The sides of the triangle.
-        sides: [f64; 2],
-    },
-}
-
 /// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to
 /// a `tolerance` in parts of the interval.
 pub fn least(
@@ -54,7 +19,7 @@ pub fn least(
     let inside = |part: f64| low + part * (high - low);
     let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
     let cost = |part: &f64| cost(inside(*part));
-    let failure = SearchError::Minimum { low, high };
+    let failure = FitError::Minimum { low, high };
     let (part, value) = solve(cost, Ok(solver), failure, |state| state.max_iters(100))?;
     Ok((inside(part), value))
 }
@@ -75,7 +40,7 @@ pub fn root(
         1.0 => Ok(at_high),
         part => height(inside(part)),
     };
-    let failure = SearchError::Zero { low, high };
+    let failure = FitError::Zero { low, high };
     Ok(inside(solve(height, Ok(solver), failure, |state| state.max_iters(100))?.0))
 }
 
@@ -93,7 +58,7 @@ pub fn least_near(
     let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-15);
     let cost = |at: &Vec<f64>| cost([at[0], at[1]]).map(|value| value / unit);
-    let failure = SearchError::Simplex { start, sides: step };
+    let failure = FitError::Simplex { start, sides: step };
     let (at, value) = solve(cost, solver, failure, |state| state.max_iters(300))?;
     Ok(([at[0], at[1]], value * unit))
 }
@@ -104,7 +69,7 @@ type SolverState<P> = IterState<P, (), (), (), (), f64>;
 fn solve<P, F, S>(
     cost: F,
     solver: Result<S, Error>,
-    failure: SearchError,
+    failure: FitError,
     start: impl FnOnce(SolverState<P>) -> SolverState<P>,
 ) -> Result<(P, f64), FitError>
 where
@@ -121,7 +86,7 @@ where
     let solved = solved.map_err(|_| failure)?;
     let state = solved.state();
     let best = state.get_best_param().map(|at| (at.clone(), state.get_best_cost()));
-    best.ok_or(SearchError::NoPlaces.into())
+    best.ok_or(FitError::NoPlaces)
 }
 
 /// A function whose minimum or zero is looked for, and its first failure. After a failure the
@@ -178,6 +143,6 @@ mod tests {
     #[test]
     fn a_zero_needs_values_of_two_signs() {
         let found = root([(1.0, 2.0), (3.0, 10.0)], |x| Ok(x * x + 1.0));
-        assert_eq!(found, Err(SearchError::Zero { low: 1.0, high: 3.0 }.into()));
+        assert_eq!(found, Err(FitError::Zero { low: 1.0, high: 3.0 }));
     }
 }

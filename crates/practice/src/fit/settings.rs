@@ -1,8 +1,9 @@
 //! The settings of a fit.
 
-use stickslip_model::{Damping, Law};
+use stickslip_model::{Damping, InvalidValue, Law};
 use stickslip_plane::Range;
 
+use super::FitError;
 use super::bodies::Bodies;
 use super::data::{Datum, Measured};
 use super::free::{Free, Ranges};
@@ -64,25 +65,25 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidFit`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidFit> {
+    /// [`FitError`] names the first that is out of its range, or contradicts another.
+    pub fn validate(&self) -> Result<(), FitError> {
         let count = self.data.len();
-        if count == 0 || count > Self::MOST_DATA {
-            return Err(InvalidFit::Count { count });
+        if !(1..=Self::MOST_DATA).contains(&count) {
+            let expected = format!("1 to {}", Self::MOST_DATA);
+            return Err(InvalidValue::new("data", count, expected).into());
         }
         for datum in &self.data {
             valid(datum, self.bodies.are_scaled())?;
         }
-        if !(0.5..=0.9999).contains(&self.level) {
-            return Err(InvalidFit::Level { value: self.level });
-        }
+        let accepted = (0.5..=0.9999).contains(&self.level);
+        InvalidValue::check("level", self.level, "0.5 to 0.9999", accepted)?;
         self.valid_free()?;
         self.valid_damping()?;
         let stages = [(true, self.free.contains(&Free::Damping).into())];
         for (normal, free) in stages.into_iter().chain([(false, self.tangential().len())]) {
             let data = self.data_of(normal).count();
             if data < free {
-                return Err(InvalidFit::TooFew { data, free, normal });
+                return Err(FitError::TooFew { data, free, normal });
             }
             if free > 0 {
                 self.valid_errors(normal)?;
@@ -91,11 +92,11 @@ impl Settings {
         Ok(())
     }
 
-    fn valid_free(&self) -> Result<(), InvalidFit> {
+    fn valid_free(&self) -> Result<(), FitError> {
         for (index, free) in self.free.iter().enumerate() {
             let name = free.name();
             if self.free[..index].contains(free) {
-                return Err(InvalidFit::Twice { name });
+                return Err(FitError::Twice { name });
             }
             let Range { low, high } = self.ranges.of(*free);
             let (least, open, most) = match free {
@@ -105,34 +106,33 @@ impl Settings {
             };
             let above = if open { low > least } else { low >= least };
             if !(above && low < high && high <= most) {
-                return Err(InvalidFit::Range { name, low, high, most, open });
+                return Err(FitError::Range { name, low, high, most, open });
             }
         }
         if self.free.is_empty() || self.tangential().len() > 2 {
-            return Err(InvalidFit::Free { count: self.tangential().len() });
+            return Err(FitError::Free { count: self.tangential().len() });
         }
         Ok(())
     }
 
-    fn valid_damping(&self) -> Result<(), InvalidFit> {
+    fn valid_damping(&self) -> Result<(), FitError> {
         let law = self.bodies.pair.law;
         let free = self.free.contains(&Free::Damping);
         let damped = law.damping != Damping::None;
         if let Some(value) = self.eps_n {
             if free {
-                return Err(InvalidFit::DampingTwice { value });
+                return Err(FitError::DampingTwice { value });
             }
             let without = "1, since this law has no damping";
             let expected = if damped { Measured::EpsN.expected() } else { without };
-            if !(Measured::EpsN.allows(value) && (damped || value == 1.0)) {
-                return Err(InvalidFit::EpsN { value, expected });
-            }
+            let accepted = Measured::EpsN.allows(value) && (damped || value == 1.0);
+            InvalidValue::check("eps_n", value, expected, accepted)?;
         }
         if free && !damped {
-            return Err(InvalidFit::Undamped { name: Free::Damping.name() });
+            return Err(FitError::Undamped { name: Free::Damping.name() });
         }
         if free && self.ranges.damping.high >= law.endless_from() {
-            return Err(InvalidFit::Endless {
+            return Err(FitError::Endless {
                 high: self.ranges.damping.high,
                 most: law.endless_from(),
             });
@@ -143,23 +143,23 @@ impl Settings {
         };
         let dashpot = Free::TangentialDamping;
         if self.free.contains(&dashpot) && (!damped || elastic) {
-            return Err(InvalidFit::Undamped { name: dashpot.name() });
+            return Err(FitError::Undamped { name: dashpot.name() });
         }
         Ok(())
     }
 
     /// All data of a stage have errors, or none has one and all are of one quantity.
-    fn valid_errors(&self, normal: bool) -> Result<(), InvalidFit> {
+    fn valid_errors(&self, normal: bool) -> Result<(), FitError> {
         let data = || self.data_of(normal).map(|(_, datum)| datum);
         let with = data().filter(|datum| datum.error.is_some()).count();
         if with == 0 {
             let mut quantities: Vec<_> = data().map(|datum| datum.quantity.name()).collect();
             quantities.dedup();
             if let Some(other) = quantities.iter().find(|name| **name != quantities[0]) {
-                return Err(InvalidFit::Weights { first: quantities[0], second: other });
+                return Err(FitError::Weights { first: quantities[0], second: other });
             }
         } else if let Some(datum) = data().find(|datum| datum.error.is_none()) {
-            return Err(InvalidFit::NoError { row: datum.row, name: datum.quantity.name() });
+            return Err(FitError::NoError { row: datum.row, name: datum.quantity.name() });
         }
         Ok(())
     }
@@ -174,9 +174,11 @@ impl Settings {
     }
 }
 
-fn valid(datum: &Datum, scaled: bool) -> Result<(), InvalidFit> {
+fn valid(datum: &Datum, scaled: bool) -> Result<(), InvalidValue> {
     let Datum { row, normal_m_per_s, tangential_m_per_s, quantity, value, error } = *datum;
-    let bad = |name, value, expected| Err(InvalidFit::Datum { row, name, value, expected });
+    let bad = |name: &str, value: f64, expected: &'static str| {
+        Err(InvalidValue::new(format!("row {row}: {name}"), value, expected))
+    };
     if !(normal_m_per_s > 0.0 && normal_m_per_s.is_finite()) {
         return bad("normal_m_per_s", normal_m_per_s, "a finite number above 0");
     }
@@ -196,142 +198,8 @@ fn valid(datum: &Datum, scaled: bool) -> Result<(), InvalidFit> {
     }
     match error {
         Some(error) if !(1e-12..=1e12).contains(&error) => {
-            Err(InvalidFit::Error { row, name: quantity.name(), error })
+            bad(&format!("{}_error", quantity.name()), error, "1e-12 to 1e12")
         }
         _ => Ok(()),
     }
-}
-
-/// Settings are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidFit {
-    /// There are no data, or too many.
-    #[error("{count} data; expected 1 to {}", Settings::MOST_DATA)]
-    Count {
-        /// The number of data.
-        count: usize,
-    },
-    /// A datum is out of range.
-    #[error("row {row}: {name} = {value:?} is out of range; expected {expected}")]
-    Datum {
-        /// Its row.
-        row: usize,
-        /// The name of the quantity.
-        name: &'static str,
-        /// The value.
-        value: f64,
-        /// The range in words.
-        expected: &'static str,
-    },
-    /// An error is out of range.
-    #[error("row {row}: {name}_error = {error:?} is out of range; expected 1e-12 to 1e12")]
-    Error {
-        /// Its row.
-        row: usize,
-        /// The name of the quantity.
-        name: &'static str,
-        /// The error.
-        error: f64,
-    },
-    /// Some data have errors, but not all.
-    #[error("row {row}: {name} has no error, and others have one; expected all errors, or none")]
-    NoError {
-        /// The row of a datum without error.
-        row: usize,
-        /// The name of the quantity.
-        name: &'static str,
-    },
-    /// Several quantities are fitted together without errors.
-    #[error(
-        "{first} and {second} have no errors; expected errors, which weigh one quantity against the \
-         other, or one quantity"
-    )]
-    Weights {
-        /// The name of a quantity.
-        first: &'static str,
-        /// The name of another one.
-        second: &'static str,
-    },
-    /// There are fewer data than numbers to be fitted.
-    #[error(
-        "{data} data {} for {free} free numbers; expected at least as many data",
-        if *normal { "of eps_n" } else { "of the tangential motion" }
-    )]
-    TooFew {
-        /// The number of data.
-        data: usize,
-        /// The number of free numbers.
-        free: usize,
-        /// Whether these are data of ε_n.
-        normal: bool,
-    },
-    /// Nothing is fitted, or too much.
-    #[error(
-        "{count} free numbers besides the damping; expected 1 or 2 of kappa (or k_t), mu and \
-         tangential_damping, or damping"
-    )]
-    Free {
-        /// How many there are besides the damping.
-        count: usize,
-    },
-    /// A number is to be fitted twice.
-    #[error("{name} is free twice; expected different names")]
-    Twice {
-        /// The name.
-        name: &'static str,
-    },
-    /// A range is not an interval, or out of range.
-    #[error(
-        "the range {low:?} to {high:?} of {name} cannot be used; expected two rising numbers {} 0, \
-         at most {most:?}",
-        if *open { "above" } else { "from" }
-    )]
-    Range {
-        /// The name of the number.
-        name: &'static str,
-        /// Its lower end.
-        low: f64,
-        /// Its upper end.
-        high: f64,
-        /// The largest upper end.
-        most: f64,
-        /// Whether 0 is left out.
-        open: bool,
-    },
-    /// A damping is free where nothing is damped.
-    #[error(
-        "{name} is free, but has no effect without damping; expected a law with damping, and eps_n below 1"
-    )]
-    Undamped {
-        /// The name.
-        name: &'static str,
-    },
-    /// The range of the damping has contacts that never end.
-    #[error("damping up to {high:?} has contacts that never end; expected a range below {most:?}")]
-    Endless {
-        /// The upper end of the range.
-        high: f64,
-        /// Where contacts stop to end.
-        most: f64,
-    },
-    /// The damping is both given and fitted.
-    #[error("eps_n = {value:?} decides the damping, which is free; expected one of the two")]
-    DampingTwice {
-        /// ε_n.
-        value: f64,
-    },
-    /// ε_n is out of range.
-    #[error("eps_n = {value:?} is out of range; expected {expected}")]
-    EpsN {
-        /// ε_n.
-        value: f64,
-        /// The range in words.
-        expected: &'static str,
-    },
-    /// The level is out of range.
-    #[error("level = {value:?} is out of range; expected 0.5 to 0.9999")]
-    Level {
-        /// The level.
-        value: f64,
-    },
 }

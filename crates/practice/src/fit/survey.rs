@@ -1,6 +1,7 @@
 //! The fit itself: the model on a grid, and what is made of it with data.
 
 use rayon::prelude::*;
+use stickslip_model::InvalidValue;
 use stickslip_plane::progress::{Progress, Report};
 
 use super::axis::Axis;
@@ -14,7 +15,7 @@ use super::normal;
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
 use super::settings::Settings;
-use super::{Fit, FitError, InvalidFit, Mindlin, Minimum, Residual, RootMeanSquare, SCHEMA};
+use super::{Fit, FitError, Mindlin, Minimum, Residual, RootMeanSquare, SCHEMA};
 use crate::time_steps::undamped_contact_time;
 
 /// What the model says of the impacts at all places of the global search. Several sets of data of
@@ -137,7 +138,8 @@ impl Survey {
     pub fn fit_of(&self, values: &[f64]) -> Result<Fit, FitError> {
         let mut settings = self.settings.clone();
         if values.len() != settings.data.len() || self.damping.is_some() {
-            return Err(InvalidFit::Count { count: values.len() }.into());
+            let expected = format!("1 to {}", Settings::MOST_DATA);
+            return Err(InvalidValue::new("data", values.len(), expected).into());
         }
         for (datum, value) in settings.data.iter_mut().zip(values) {
             datum.value = *value;

@@ -1,14 +1,19 @@
 //! The file of a table, schema [`SCHEMA`], and what a reader of it refuses.
 
 use serde::{Deserialize, Serialize};
+use stickslip_model::InvalidValue;
 use stickslip_plane::Range;
 
+use super::TableError;
 use super::chebyshev::{ACROSS, ALONG};
 use super::settings::Window;
 use super::table::{Arrays, NO_REGION, Table, Verification};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.table/1";
+
+/// What numbers are expected to be.
+const ASCENDING: &str = "a finite number in an ascending range";
 
 /// A table as its JSON has it. See [`Table`] for the fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,43 +27,6 @@ pub struct Document {
     pub verification: Verification,
     pub regions: Vec<String>,
     pub arrays: Arrays,
-}
-
-/// A document is not a table.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DocumentError {
-    /// The layout is another one.
-    #[error("schema is {found:?}; expected {SCHEMA:?}")]
-    Schema {
-        /// The layout of the document.
-        found: String,
-    },
-    /// A number is out of its range.
-    #[error("{name} = {value:?} is out of range; expected a finite number in an ascending range")]
-    Number {
-        /// The field.
-        name: &'static str,
-        /// The first such number.
-        value: f64,
-    },
-    /// An array has another length.
-    #[error("{name} has {length} elements; expected {expected}")]
-    Length {
-        /// The array.
-        name: &'static str,
-        /// Its length.
-        length: usize,
-        /// The length that fits the other arrays.
-        expected: usize,
-    },
-    /// An array contradicts another one.
-    #[error("{name} contradicts the other arrays at element {index}")]
-    Contradiction {
-        /// The array.
-        name: &'static str,
-        /// The first such element.
-        index: usize,
-    },
 }
 
 impl From<&Table> for Document {
@@ -76,15 +44,15 @@ impl From<&Table> for Document {
 }
 
 impl TryFrom<Document> for Table {
-    type Error = DocumentError;
+    type Error = TableError;
 
     /// The table of a document. Everything is checked that a look-up relies on; that the
     /// coefficients are right is not.
-    fn try_from(document: Document) -> Result<Self, DocumentError> {
+    fn try_from(document: Document) -> Result<Self, TableError> {
         let Document { schema, window, constant_eps_n, bound, verification, regions, arrays } =
             document;
         if schema != SCHEMA {
-            return Err(DocumentError::Schema { found: schema });
+            return Err(InvalidValue::new("schema", &*schema, format!("{SCHEMA:?}")).into());
         }
         let damping = match window {
             Window::Scaled { damping, .. } => damping,
@@ -102,28 +70,27 @@ impl TryFrom<Document> for Table {
             (x_name, x.high, true),
             (y_name, y.high, true),
         ] {
-            require(ok && value.is_finite(), DocumentError::Number { name, value })?;
+            InvalidValue::check(name, value, ASCENDING, ok && value.is_finite())?;
         }
         let is_scaled = matches!(window, Window::Scaled { .. });
-        let contradiction = DocumentError::Contradiction { name: "constant_eps_n", index: 0 };
-        require(constant_eps_n.is_some() == is_scaled, contradiction)?;
+        if constant_eps_n.is_some() != is_scaled {
+            return Err(TableError::Contradiction { name: "constant_eps_n", index: 0 });
+        }
         arrays.check(sides, regions.len(), is_scaled)?;
         Ok(Self { window, constant_eps_n, bound, verification, regions, sides, arrays })
     }
 }
 
-fn require(ok: bool, error: DocumentError) -> Result<(), DocumentError> {
-    if ok { Ok(()) } else { Err(error) }
+fn require_length(name: &str, length: usize, expected: usize) -> Result<(), InvalidValue> {
+    if length == expected {
+        return Ok(());
+    }
+    Err(InvalidValue::new(format!("the length of {name}"), length, expected.to_string()))
 }
 
 impl Arrays {
     /// Checks everything that a look-up relies on.
-    fn check(
-        &self,
-        [x, y]: [Range; 2],
-        regions: usize,
-        is_scaled: bool,
-    ) -> Result<(), DocumentError> {
+    fn check(&self, [x, y]: [Range; 2], regions: usize, is_scaled: bool) -> Result<(), TableError> {
         let slabs = self.scales.len();
         let normals = if is_scaled { 0 } else { ALONG * slabs };
         let sides = self.strip_stretches.len();
@@ -139,7 +106,7 @@ impl Arrays {
             ("regions", self.regions.len(), with_regions),
             ("rows", self.rows.len(), self.rows.len().next_multiple_of(ACROSS)),
         ] {
-            require(length == expected, DocumentError::Length { name, length, expected })?;
+            require_length(name, length, expected)?;
         }
         for (name, values) in [
             ("walls", &self.walls),
@@ -148,12 +115,12 @@ impl Arrays {
             ("graphs", &self.graphs),
             ("rows", &self.rows),
         ] {
-            if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
-                return Err(DocumentError::Number { name, value });
+            for &value in values {
+                InvalidValue::check(name, value, ASCENDING, value.is_finite())?;
             }
         }
         let contradiction = |name: &'static str, index: Option<usize>| {
-            index.map_or(Ok(()), |index| Err(DocumentError::Contradiction { name, index }))
+            index.map_or(Ok(()), |index| Err(TableError::Contradiction { name, index }))
         };
         contradiction("walls", self.walls.windows(2).position(|pair| pair[0] >= pair[1]))?;
         let ends = [self.walls[0], self.walls[slabs]] == [x.low, x.high];
@@ -177,14 +144,7 @@ impl Arrays {
         same("slab_hints", self.slab_hints == expected.slab_hints)?;
         // Of another processor's rounding, bounds of graphs differ in the last digits.
         let count = self.strip_keys.count;
-        require(
-            self.strip_hints.len() == count * slabs,
-            DocumentError::Length {
-                name: "strip_hints",
-                length: self.strip_hints.len(),
-                expected: count * slabs,
-            },
-        )?;
+        require_length("strip_hints", self.strip_hints.len(), count * slabs)?;
         let wrong = self.strip_hints.iter().enumerate().position(|(index, &hint)| {
             let slab = index / count;
             let strips = self.first_strips[slab + 1] - self.first_strips[slab] - 1;

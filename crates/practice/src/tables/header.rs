@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write};
 
-use stickslip_model::Surface;
+use stickslip_model::{InvalidValue, Surface};
 use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{ACROSS, ALONG};
@@ -58,20 +58,16 @@ const VELOCITIES: &str = " * Both arguments are velocities of the surfaces at th
  *   coefficient of friction   @FRICTION@
  *   tangential inertia        @ALPHA@ (2/7 for homogeneous spheres)";
 
-/// The prefix cannot begin names in C.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("prefix = {0:?}; expected up to 64 ASCII letters, digits and _, and a letter first")]
-pub struct InvalidPrefix(pub String);
-
 /// Checks that `prefix` can begin names in C.
 ///
 /// # Errors
-/// [`InvalidPrefix`]: it cannot.
-pub fn require_prefix(prefix: &str) -> Result<(), InvalidPrefix> {
+/// [`InvalidValue`]: it cannot.
+pub fn require_prefix(prefix: &str) -> Result<(), InvalidValue> {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let starts = prefix.starts_with(|c: char| c.is_ascii_alphabetic());
     let ok = starts && prefix.len() <= 64 && prefix.chars().all(is_name);
-    if ok { Ok(()) } else { Err(InvalidPrefix(prefix.to_owned())) }
+    let expected = "up to 64 ASCII letters, digits and _, and a letter first";
+    InvalidValue::check("prefix", prefix, expected, ok)
 }
 
 impl Table {
@@ -79,8 +75,8 @@ impl Table {
     /// arguments are explained in it.
     ///
     /// # Errors
-    /// [`InvalidPrefix`]: the prefix cannot begin names in C.
-    pub fn c_header(&self, prefix: &str) -> Result<String, InvalidPrefix> {
+    /// [`InvalidValue`]: the prefix cannot begin names in C.
+    pub fn c_header(&self, prefix: &str) -> Result<String, InvalidValue> {
         require_prefix(prefix)?;
         let arrays = self.arrays();
         let with_regions = !arrays.regions.is_empty();

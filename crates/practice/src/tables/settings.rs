@@ -1,8 +1,10 @@
 //! The settings of a table.
 
-use stickslip_model::{BodyPair, InvalidParameter, Law};
+use stickslip_model::{BodyPair, InvalidValue, Law};
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::{CollisionPlane, Range};
+
+use super::TableError;
 
 /// The window of a table and its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,8 +67,8 @@ impl Window {
     /// The collisions of the window.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: a value that no collision can have.
-    pub fn plane(&self) -> Result<CollisionPlane, InvalidParameter> {
+    /// [`InvalidValue`]: a value that no collision can have.
+    pub fn plane(&self) -> Result<CollisionPlane, InvalidValue> {
         match *self {
             Self::Scaled { kappa, psi, damping } => Frame::new(kappa, psi, damping).plane(),
             Self::Velocities { pair, .. } => CollisionPlane::velocities(pair, self.sides()),
@@ -95,52 +97,26 @@ impl Settings {
     /// Checks all settings but those that an atlas checks.
     ///
     /// # Errors
-    /// [`InvalidTable`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidTable> {
-        if !(Self::FINEST..=Self::COARSEST).contains(&self.bound) {
-            return Err(InvalidTable::Bound { value: self.bound });
+    /// [`TableError::Settings`] names the first that is out of its range; [`TableError::Law`].
+    pub fn validate(&self) -> Result<(), TableError> {
+        let (finest, coarsest) = (Self::FINEST, Self::COARSEST);
+        if !(finest..=coarsest).contains(&self.bound) {
+            let expected = format!("{finest:e} to {coarsest:e}");
+            return Err(InvalidValue::new("bound", self.bound, expected).into());
         }
         for (name, Range { low, high }) in self.window.names().into_iter().zip(self.window.sides())
         {
-            if !(low > 0.0 && high > low && high.is_finite()) {
-                return Err(InvalidTable::Range { name, low, high });
-            }
+            let accepted = low > 0.0 && high > low && high.is_finite();
+            let expected = "an ascending interval above 0";
+            InvalidValue::check(name, [low, high], expected, accepted)?;
         }
         match self.window {
             Window::Velocities { pair, .. }
                 if pair.law != Law::PAPER || pair.tangential_damping_ratio != 0.0 =>
             {
-                Err(InvalidTable::Law)
+                Err(TableError::Law)
             }
             _ => Ok(()),
         }
     }
-}
-
-/// Settings are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidTable {
-    /// The bound is out of range.
-    #[error(
-        "bound = {value:?} is out of range; expected {:e} to {:e}",
-        Settings::FINEST,
-        Settings::COARSEST
-    )]
-    Bound {
-        /// The bound.
-        value: f64,
-    },
-    /// An interval is empty or out of range.
-    #[error("{name} = {low:?} to {high:?} is out of range; expected an ascending interval above 0")]
-    Range {
-        /// The name of the axis.
-        name: &'static str,
-        /// The lower end.
-        low: f64,
-        /// The upper end.
-        high: f64,
-    },
-    /// The bodies have another contact law.
-    #[error("the bodies have another contact law; expected the paper's, which tables are made for")]
-    Law,
 }

@@ -1,6 +1,6 @@
 //! The settings of a study of time steps.
 
-use stickslip_model::{Contact, Reduction, quantity};
+use stickslip_model::{Contact, InvalidValue, Reduction, quantity};
 
 use super::scheme::Scheme;
 
@@ -48,84 +48,31 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidTimeSteps`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidTimeSteps> {
-        if self.contacts.is_empty() {
-            return Err(InvalidTimeSteps::NoContacts);
-        }
-        if self.steps_per_contact.is_empty() {
-            return Err(InvalidTimeSteps::NoSteps);
-        }
-        let range = Self::FEWEST_STEPS..=Self::MOST_STEPS;
-        if let Some(&value) = self.steps_per_contact.iter().find(|steps| !range.contains(steps)) {
-            return Err(InvalidTimeSteps::Steps { value });
-        }
-        if !(1..=Self::MOST_PHASES).contains(&self.phases) {
-            return Err(InvalidTimeSteps::Phases { value: self.phases });
-        }
+    /// [`InvalidValue`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         let (impacts, phases) = (self.contacts.len(), self.phases);
+        InvalidValue::check("contacts", impacts, "at least one", impacts > 0)?;
+        let steps = &self.steps_per_contact;
+        InvalidValue::check("steps", steps.len(), "at least one", !steps.is_empty())?;
+        let range = Self::FEWEST_STEPS..=Self::MOST_STEPS;
+        if let Some(&value) = steps.iter().find(|steps| !range.contains(steps)) {
+            let (low, high) = (range.start(), range.end());
+            let expected = format!("a number of steps in a contact from {low:?} to {high:?}");
+            return Err(InvalidValue::new("steps", value, expected));
+        }
+        if !(1..=Self::MOST_PHASES).contains(&phases) {
+            let expected = format!("1 to {}", Self::MOST_PHASES);
+            return Err(InvalidValue::new("phases", phases, expected));
+        }
         if impacts.saturating_mul(phases) > Self::MOST_CONTACTS {
-            return Err(InvalidTimeSteps::Many { impacts, phases });
+            let most = Self::MOST_CONTACTS;
+            let expected = format!("a product with {impacts} impacts of at most {most}");
+            return Err(InvalidValue::new("phases", phases, expected));
         }
         let Reduction { mu, alpha } = self.reduction;
-        if quantity::FRICTION.check(mu).is_err() {
-            return Err(InvalidTimeSteps::Mu { value: mu });
-        }
-        if quantity::INERTIA.check(alpha).is_err() {
-            return Err(InvalidTimeSteps::Alpha { value: alpha });
-        }
-        Ok(())
+        let accepted = quantity::FRICTION.check(mu).is_ok();
+        InvalidValue::check("mu", mu, "a finite number above 0", accepted)?;
+        let accepted = quantity::INERTIA.check(alpha).is_ok();
+        InvalidValue::check("alpha", alpha, "a number above 0, at most 1", accepted)
     }
-}
-
-/// Settings are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidTimeSteps {
-    /// There is no impact.
-    #[error("contacts: 0 impacts; expected at least one")]
-    NoContacts,
-    /// There is no step.
-    #[error("steps: 0 time steps; expected at least one")]
-    NoSteps,
-    /// A number of steps is out of range.
-    #[error(
-        "steps = {value:?} is out of range; expected a number of steps in a contact from {:?} to \
-         {:?}",
-        Settings::FEWEST_STEPS,
-        Settings::MOST_STEPS
-    )]
-    Steps {
-        /// The number of steps in a contact.
-        value: f64,
-    },
-    /// The number of phases is out of range.
-    #[error("phases = {value} is out of range; expected 1 to {}", Settings::MOST_PHASES)]
-    Phases {
-        /// The number.
-        value: usize,
-    },
-    /// There are too many contacts.
-    #[error(
-        "phases = {phases} with {impacts} impacts make too many contacts; expected a product of at \
-         most {}",
-        Settings::MOST_CONTACTS
-    )]
-    Many {
-        /// The number of impacts.
-        impacts: usize,
-        /// The number of phases.
-        phases: usize,
-    },
-    /// The coefficient of friction is out of range.
-    #[error("mu = {value:?} is out of range; expected a finite number above 0")]
-    Mu {
-        /// The number.
-        value: f64,
-    },
-    /// The tangential inertia is out of range.
-    #[error("alpha = {value:?} is out of range; expected a number above 0, at most 1")]
-    Alpha {
-        /// The number.
-        value: f64,
-    },
 }

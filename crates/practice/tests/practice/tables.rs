@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use fastrand::Rng;
-use stickslip_model::{Contact, Engine, exact};
+use stickslip_model::{Contact, Engine, InvalidValue, exact};
 use stickslip_plane::{Range, progress};
-use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError, Window};
+use stickslip_practice::tables::{self, Settings, Table, TableError, Window};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::{Document, Keys};
 
@@ -216,16 +216,16 @@ fn what_cannot_be_is_refused_with_numbers() {
         change(&mut settings);
         tables::run(&settings, progress::SILENT).expect_err("no table")
     };
-    let bound = |value| TableError::Settings(InvalidTable::Bound { value });
+    let bound = |value| TableError::from(InvalidValue::new("bound", value, "1e-12 to 1e-3"));
     assert_eq!(refused(|it| it.bound = 1e-13), bound(1e-13));
     assert_eq!(refused(|it| it.bound = 0.1), bound(0.1));
     assert!(refused(|it| it.bound = f64::NAN).to_string().contains("1e-12 to 1e-3"));
     let empty = refused(|it| it.window = scaled((3.0, 3.0), (0.2, 2.4), 0.0));
-    assert!(matches!(empty, TableError::Settings(InvalidTable::Range { name: "kappa", .. })));
+    assert!(matches!(empty, TableError::Settings(InvalidValue { name, .. }) if name == "kappa"));
     let negative = refused(|it| it.window = scaled((0.5, 4.5), (-1.0, 2.4), 0.0));
     assert!(matches!(negative, TableError::Settings(_)));
     let negative = refused(|it| it.window = scaled((0.5, 4.5), (0.2, 2.4), -0.1));
-    assert!(matches!(negative, TableError::Parameter(_)));
+    assert!(matches!(negative, TableError::Settings(_)));
     let narrow = refused(|it| it.window = scaled((3.0, 3.0 + 1e-8), (0.2, 2.4), 0.0));
     assert!(matches!(narrow, TableError::Atlas(_)), "{narrow}");
 }

@@ -9,7 +9,7 @@ use stickslip_model::{Body, BodyPair, Engine, Law, Material, Sphere, Surface, Wa
 use stickslip_plane::{Range, progress};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::Document;
-use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError, Window};
+use stickslip_practice::tables::{self, Settings, Table, TableError, Window};
 
 use crate::c_program;
 
@@ -246,7 +246,7 @@ fn what_cannot_be_is_refused_with_numbers() {
     ];
     for change in other {
         let error = refused(change(spheres(), history), (1.0, 8.0), (0.3, 12.0));
-        assert_eq!(error, TableError::Settings(InvalidTable::Law));
+        assert_eq!(error, TableError::Law);
     }
 }
 

@@ -3,9 +3,7 @@
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use stickslip_solver::sliding::Side;
-use stickslip_solver::{
-    Direction, EmbeddedPair, Guard, InvalidOption, Options, Schedule, Times, UnknownEmbeddedPair,
-};
+use stickslip_solver::{Direction, EmbeddedPair, Guard, InvalidValue, Options, Schedule, Times};
 
 use crate::failure::bad_input;
 
@@ -174,7 +172,7 @@ pub struct Settings {
 
 impl Settings {
     pub fn checked(&self) -> PyResult<(EmbeddedPair, Options)> {
-        let pair = self.method.parse().map_err(|error: UnknownEmbeddedPair| bad_input(error))?;
+        let pair = self.method.parse().map_err(|error: InvalidValue| bad_input(error))?;
         let options = Options {
             rtol: self.rtol,
             atol: self.atol,
@@ -184,9 +182,7 @@ impl Settings {
             guard_scale: self.guard_scale,
             ..Options::default()
         };
-        options.validate().map_err(|InvalidOption { name, value, expected }| {
-            bad_input(format!("{name} = {value:?} is out of range; expected {expected}"))
-        })?;
+        options.validate().map_err(bad_input)?;
         Ok((pair, options))
     }
 }

@@ -118,7 +118,7 @@ fn reason(system: &System, error: &RunError) -> String {
             )
         }
         RunError::Schedule { s } => format!("After t = {s:?}, a clock has no valid next time."),
-        RunError::Option(error) => error.to_string(),
+        RunError::Option(_) | RunError::Unfinished { .. } => error.to_string(),
         RunError::Span { from, to } => format!("no run leads from t = {from:?} to t = {to:?}"),
         RunError::State { s, component } => {
             format!("At t = {s:?}, component {component} of the state is not finite.")

@@ -1,9 +1,8 @@
 //! Single collisions and their course in time.
 
 use stickslip_figure::pictures::course::Course;
-use stickslip_model::{Collision, Contact, Engine, History, Snapshot};
+use stickslip_model::{Collision, CollisionFailure, Contact, Engine, History, Snapshot};
 use stickslip_studies::Cell;
-use stickslip_studies::CollisionFailure;
 use stickslip_studies::paper::{Reading, psi};
 
 use crate::error::ReproductionError;

@@ -2,9 +2,8 @@
 
 use fastrand::Rng;
 use stickslip_model::regularized::END;
-use stickslip_model::{BodyPair, Material, Surface};
+use stickslip_model::{BodyPair, CollisionFailure, Material, Surface};
 use stickslip_solver::Outcome;
-use stickslip_studies::CollisionFailure;
 use stickslip_studies::three_parameters::ThreeParameters;
 
 use super::sampling::{each, random};

@@ -1,7 +1,9 @@
 //! Models of the spring, and the collisions with each.
 
-use stickslip_model::{Collider, Collision, Contact, Engine, EngineError, largest};
-use stickslip_studies::{CollisionFailure, unreset};
+use stickslip_model::{
+    Collider, Collision, CollisionError, CollisionFailure, Contact, Engine, largest,
+};
+use stickslip_studies::unreset;
 
 use crate::error::ReproductionError;
 
@@ -80,7 +82,7 @@ impl Spring {
 /// `result`, with its contact named if it is a failure.
 fn computed<T>(
     contact: &Contact,
-    result: Result<T, impl Into<EngineError>>,
+    result: Result<T, impl Into<CollisionError>>,
 ) -> Result<T, ReproductionError> {
     Ok(result.map_err(|source| CollisionFailure::new(contact, source))?)
 }

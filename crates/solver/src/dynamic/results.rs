@@ -1,7 +1,8 @@
 //! What a run of a dynamic system reports, and how it ends.
 
 use crate::dynamic::dense::DynamicDense;
-use crate::hybrid::{Grazing, Outcome, Pole, Preempted, Rest, Statistics, Unfinished};
+use crate::error::RunError;
+use crate::hybrid::{Grazing, Outcome, Pole, Preempted, Rest, Statistics};
 
 /// A guard of a [`DynamicSystem`](crate::DynamicSystem) fired. The slices live as long as the call
 /// of the observer; [`Self::to_switch`] keeps them.
@@ -148,12 +149,9 @@ impl<Mode> DynamicRun<Mode> {
     /// The run, if it came to a regular end: the end of its span or a terminal guard.
     ///
     /// # Errors
-    /// [`Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
+    /// [`RunError::Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
     /// because the observer stopped it.
-    pub fn finished(self) -> Result<Self, Unfinished> {
-        match self.outcome {
-            Outcome::ReachedEnd | Outcome::EndedByGuard { .. } => Ok(self),
-            outcome => Err(Unfinished { outcome, s: self.s }),
-        }
+    pub fn finished(self) -> Result<Self, RunError> {
+        RunError::unless_regular(self.outcome, self.s).map(|()| self)
     }
 }

@@ -210,27 +210,3 @@ pub struct Run<Mode, const N: usize> {
     /// The work done by the run.
     pub statistics: Statistics,
 }
-
-impl<Mode, const N: usize> Run<Mode, N> {
-    /// The run, if it came to a regular end: the end of its span or a terminal guard.
-    ///
-    /// # Errors
-    /// [`Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
-    /// because the observer stopped it.
-    pub fn finished(self) -> Result<Self, Unfinished> {
-        match self.outcome {
-            Outcome::ReachedEnd | Outcome::EndedByGuard { .. } => Ok(self),
-            outcome => Err(Unfinished { outcome, s: self.s }),
-        }
-    }
-}
-
-/// A run ended before it reached the end of its span or a terminal guard.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the run ended early, at s = {s}: {outcome:?}")]
-pub struct Unfinished {
-    /// Why the run ended.
-    pub outcome: Outcome,
-    /// Where the run ended.
-    pub s: f64,
-}

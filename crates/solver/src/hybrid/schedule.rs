@@ -3,7 +3,7 @@
 //! A clock is a guard: it has a place in the list, a priority, a count and a transition. Only its
 //! time is found in another way.
 
-use crate::runs::InvalidTimes;
+use stickslip_number::InvalidValue;
 
 /// Times in order, for [`Schedule::at`].
 ///
@@ -20,10 +20,10 @@ impl Times {
     /// These `times`.
     ///
     /// # Errors
-    /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
+    /// [`InvalidValue`] unless the times are numbers in ascending or in descending order. Equal
     /// times count once.
-    pub fn new(mut times: Vec<f64>) -> Result<Self, InvalidTimes> {
-        InvalidTimes::check(&times)?;
+    pub fn new(mut times: Vec<f64>) -> Result<Self, InvalidValue> {
+        check_order(&times)?;
         if times.first() > times.last() {
             times.reverse();
         }
@@ -40,7 +40,7 @@ impl Times {
 /// let doses = Times::new(vec![0.0, 8.0, 24.0])?;
 /// assert_eq!(Schedule::at(&doses).next_after(8.0), 24.0);
 /// assert_eq!(Schedule::every(0.25, 0.125).next_after(0.3), 0.375);
-/// # Ok::<(), stickslip_solver::InvalidTimes>(())
+/// # Ok::<(), stickslip_solver::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule<'a> {
@@ -129,6 +129,25 @@ fn tick(period: f64, phase: f64, s: f64, late: impl Fn(f64) -> bool) -> f64 {
     // Rounding may have put the quotient on the other side of an integer.
     let times = [-1.0, 0.0, 1.0, 2.0].map(|k| (first + k) * period + phase);
     times.into_iter().find(|&time| late(time)).unwrap_or(f64::NAN)
+}
+
+/// Checks that `times` are numbers in ascending or in descending order.
+pub(crate) fn check_order(times: &[f64]) -> Result<(), InvalidValue> {
+    let descending = times.iter().find(|&&s| s != times[0]).is_some_and(|&s| s < times[0]);
+    let in_order = |i: usize| {
+        !times[i].is_nan()
+            && (i == 0 || {
+                let (before, after) = (times[i - 1], times[i]);
+                if descending { after <= before } else { after >= before }
+            })
+    };
+    match (0..times.len()).find(|&i| !in_order(i)) {
+        Some(index) => {
+            let expected = "numbers in ascending or in descending order";
+            Err(InvalidValue::new(format!("times[{index}]"), times[index], expected))
+        }
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use stickslip_number::InvalidValue;
+
 use crate::method::dop853::Dop853;
 use crate::method::dopri5::Dopri5;
 use crate::method::tableau::Method;
@@ -17,7 +19,7 @@ use crate::method::tableau::Method;
 /// assert_eq!((pair, pair.order()), (EmbeddedPair::Dopri5, 5));
 /// assert!(EmbeddedPair::ALL.iter().all(|pair| pair.to_string().parse() == Ok(*pair)));
 /// assert!("euler".parse::<EmbeddedPair>().is_err());
-/// # Ok::<(), stickslip_solver::UnknownEmbeddedPair>(())
+/// # Ok::<(), stickslip_solver::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum EmbeddedPair {
@@ -88,18 +90,10 @@ impl fmt::Display for EmbeddedPair {
 }
 
 impl FromStr for EmbeddedPair {
-    type Err = UnknownEmbeddedPair;
+    type Err = InvalidValue;
 
-    fn from_str(name: &str) -> Result<Self, UnknownEmbeddedPair> {
+    fn from_str(name: &str) -> Result<Self, InvalidValue> {
         let found = Self::ALL.into_iter().find(|pair| pair.name() == name);
-        found.ok_or_else(|| UnknownEmbeddedPair { name: name.to_owned() })
+        found.ok_or_else(|| InvalidValue::new("method", name, "\"dopri5\" or \"dop853\""))
     }
-}
-
-/// No pair has this name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no pair is called {name:?}; expected \"dopri5\" or \"dop853\"")]
-pub struct UnknownEmbeddedPair {
-    /// The name.
-    pub name: String,
 }

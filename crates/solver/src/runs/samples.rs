@@ -1,5 +1,8 @@
 //! Output at given times.
 
+use stickslip_number::InvalidValue;
+
+use crate::hybrid::schedule::check_order;
 use crate::hybrid::{Observer, SwitchEvent};
 use crate::method::{Dense, State};
 use crate::runs::trajectory::Segment;
@@ -57,10 +60,10 @@ impl<Mode: Copy, const N: usize> Samples<Mode, N> {
     /// Samples at `times`.
     ///
     /// # Errors
-    /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
+    /// [`InvalidValue`] unless the times are numbers in ascending or in descending order. Equal
     /// times may follow each other.
-    pub fn new(times: Vec<f64>) -> Result<Self, InvalidTimes> {
-        InvalidTimes::check(&times)?;
+    pub fn new(times: Vec<f64>) -> Result<Self, InvalidValue> {
+        check_order(&times)?;
         Ok(Self {
             samples: Vec::with_capacity(times.len()),
             switches: Vec::new(),
@@ -75,7 +78,7 @@ impl<Mode: Copy, const N: usize> Samples<Mode, N> {
     ///
     /// # Errors
     /// Those of [`Samples::new`].
-    pub fn at(times: &[f64]) -> Result<Self, InvalidTimes> {
+    pub fn at(times: &[f64]) -> Result<Self, InvalidValue> {
         Self::new(times.to_vec())
     }
 
@@ -149,33 +152,5 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Samples<Mode, N> {
         }
         self.missing.extend_from_slice(&self.times[self.done..]);
         self.done = self.times.len();
-    }
-}
-
-/// A list of times is not in order, or holds NaN.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("time {value} at index {index} is out of order; expected numbers, ascending or descending")]
-pub struct InvalidTimes {
-    /// The index of the first time that does not fit.
-    pub index: usize,
-    /// The time there.
-    pub value: f64,
-}
-
-impl InvalidTimes {
-    /// Checks that `times` are numbers in ascending or in descending order.
-    pub(crate) fn check(times: &[f64]) -> Result<(), Self> {
-        let descending = times.iter().find(|&&s| s != times[0]).is_some_and(|&s| s < times[0]);
-        let in_order = |i: usize| {
-            !times[i].is_nan()
-                && (i == 0 || {
-                    let (before, after) = (times[i - 1], times[i]);
-                    if descending { after <= before } else { after >= before }
-                })
-        };
-        match (0..times.len()).find(|&i| !in_order(i)) {
-            Some(index) => Err(Self { index, value: times[index] }),
-            None => Ok(()),
-        }
     }
 }

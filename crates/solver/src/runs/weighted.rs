@@ -1,9 +1,9 @@
 //! Tolerances of their own for each component.
 
+use stickslip_number::{Enclosure, Interval, InvalidValue};
+
 use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::{Method, State, Step, Trial};
-use crate::options::InvalidOption;
-use stickslip_number::{Enclosure, Interval};
 
 /// A system with a relative and an absolute tolerance for each component of the state.
 ///
@@ -37,18 +37,14 @@ impl<'a, S, const N: usize> Weighted<'a, S, N> {
     /// The `system` with a relative and an absolute tolerance for each component, in this order.
     ///
     /// # Errors
-    /// [`InvalidOption`] names the first relative tolerance that is not between 1e-15 and 0.1, or
+    /// [`InvalidValue`] names the first relative tolerance that is not between 1e-15 and 0.1, or
     /// the first absolute one that is not finite and above 0.
-    pub fn new(system: &'a S, tolerances: [(f64, f64); N]) -> Result<Self, InvalidOption> {
+    pub fn new(system: &'a S, tolerances: [(f64, f64); N]) -> Result<Self, InvalidValue> {
         for (rtol, atol) in tolerances {
-            if !(1e-15..=0.1).contains(&rtol) {
-                let expected = "1e-15 to 0.1";
-                return Err(InvalidOption { name: "rtol of a component", value: rtol, expected });
-            }
-            if !(atol > 0.0 && atol.is_finite()) {
-                let expected = "a finite number above 0";
-                return Err(InvalidOption { name: "atol of a component", value: atol, expected });
-            }
+            let accepted = (1e-15..=0.1).contains(&rtol);
+            InvalidValue::check("rtol of a component", rtol, "1e-15 to 0.1", accepted)?;
+            let accepted = atol > 0.0 && atol.is_finite();
+            InvalidValue::check("atol of a component", atol, "a finite number above 0", accepted)?;
         }
         Ok(Self { system, tolerances })
     }

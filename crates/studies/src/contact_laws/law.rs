@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
-use stickslip_model::{Collision, Contact, Engine, History, SpringEnergy};
+use stickslip_model::{Collision, CollisionFailure, Contact, Engine, History, SpringEnergy};
 use stickslip_plane::GridAxis;
 
 use super::settings::{Named, Settings};
-use crate::error::{CollisionFailure, StudyError};
+use crate::error::StudyError;
 
 /// What was computed of one law.
 pub struct LawOnPlane {
@@ -50,22 +50,17 @@ impl LawOnPlane {
             [settings.kappa, settings.psi].map(|range| GridAxis { range, cells: settings.cells });
         for point in 0..points {
             let at = (columns.centre(point % settings.cells), rows.centre(point / settings.cells));
-            let contact = |damped| {
-                settings.contact(named, at, damped).map_err(super::InvalidContactLaws::from)
-            };
+            let contact = |damped| settings.contact(named, at, damped);
             undamped.add(&collide(contact(false)?)?);
             let found = collide(contact(true)?)?;
             damped.add(&found);
-            let paper = Contact::new(at.0, at.1, found.contact.damping())
-                .map_err(super::InvalidContactLaws::from)?;
+            let paper = Contact::new(at.0, at.1, found.contact.damping())?;
             let paper = collide(paper)?;
             eps_t.push(found.eps_t());
             difference.push(found.eps_t() - paper.eps_t());
             switches.push(i32::try_from(found.switches.len()).unwrap_or(i32::MAX));
         }
-        let contact = settings
-            .contact(named, settings.standard, true)
-            .map_err(super::InvalidContactLaws::from)?;
+        let contact = settings.contact(named, settings.standard, true)?;
         let standard = Engine::Auto
             .followed(contact)
             .map(|(collision, _, history)| (collision, history))

@@ -1,10 +1,9 @@
 //! What a study of contact laws is about.
 
 use stickslip_model::presets::{self, Preset};
-use stickslip_model::{Contact, Damping, InvalidParameter, Law};
+use stickslip_model::{Contact, Damping, InvalidValue, Law};
 use stickslip_plane::Range;
 
-use crate::error::InvalidContactLaws;
 use crate::limits::{MOST_CELLS, MOST_LAWS};
 
 /// The laws of a study, and the window over which they are computed.
@@ -73,19 +72,17 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidContactLaws`] names the first that is out of range.
-    pub fn validate(&self) -> Result<(), InvalidContactLaws> {
+    /// [`InvalidValue`] names the first that is out of range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         let (count, cells) = (self.laws.len(), self.cells);
-        if !(1..=MOST_LAWS).contains(&count) {
-            return Err(InvalidContactLaws::LawCount { count });
-        }
-        if !(1..=MOST_CELLS).contains(&cells) {
-            return Err(InvalidContactLaws::Cells { cells });
+        for (name, count, most) in [("laws", count, MOST_LAWS), ("cells", cells, MOST_CELLS)] {
+            if !(1..=most).contains(&count) {
+                return Err(InvalidValue::new(name, count, format!("1 to {most}")));
+            }
         }
         for (name, Range { low, high }) in [("kappa", self.kappa), ("psi", self.psi)] {
-            if !(0.0 <= low && low < high && high.is_finite()) {
-                return Err(InvalidContactLaws::Window { name, low, high });
-            }
+            let accepted = 0.0 <= low && low < high && high.is_finite();
+            InvalidValue::check(name, [low, high], "LO:HI with 0 <= LO < HI", accepted)?;
         }
         for named in &self.laws {
             self.contact(named, self.standard, true)?;
@@ -99,7 +96,7 @@ impl Settings {
         named: &Named,
         (kappa, psi): (f64, f64),
         damped: bool,
-    ) -> Result<Contact, InvalidParameter> {
+    ) -> Result<Contact, InvalidValue> {
         let damped = damped && named.law.damping != Damping::None;
         let a = if damped { self.damping } else { 0.0 };
         let b = if damped && named.tangential_damping { self.tangential_damping } else { 0.0 };

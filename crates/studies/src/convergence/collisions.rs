@@ -2,11 +2,10 @@
 
 use serde::Serialize;
 use serde_json::{Value, json};
-use stickslip_model::{Collision, Engine, EngineError, Tolerances};
+use stickslip_model::{Collision, CollisionError, CollisionFailure, Engine, Tolerances};
 use stickslip_solver::EmbeddedPair;
 
 use super::measure::Approximation;
-use crate::error::CollisionFailure;
 
 /// The errors of both pairs at their usual tolerances, in one collision.
 #[derive(Clone, Debug)]
@@ -70,7 +69,7 @@ pub fn engine(pair: EmbeddedPair) -> Engine {
 }
 
 impl PairAccuracy {
-    fn new(pair: EmbeddedPair, reference: &Collision) -> Result<Self, EngineError> {
+    fn new(pair: EmbeddedPair, reference: &Collision) -> Result<Self, CollisionError> {
         let (collision, statistics) = engine(pair).collide(reference.contact)?;
         let statistics = statistics.unwrap_or_default();
         let switches = collision.switches.iter().map(|s| (s.time, s.to, s.side)).collect();

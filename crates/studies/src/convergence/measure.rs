@@ -8,7 +8,7 @@
 use serde::Serialize;
 use stickslip_model::exact;
 use stickslip_model::regularized::{self, Phase, Regularized};
-use stickslip_model::{Collider, Collision, CollisionError, Contact, EngineError, Regime, Side};
+use stickslip_model::{Collider, Collision, CollisionError, Contact, Regime, Side};
 use stickslip_solver::{
     Dop853, Dopri5, EmbeddedPair, HybridSystem, Observer, Options, Outcome, Run, RunError, Start,
     Statistics, SwitchEvent, run_over_switches, run_with,
@@ -82,8 +82,8 @@ impl Approximation {
 /// laws than the paper's Dormand–Prince 8(5,3) at a tolerance of 1e-15.
 ///
 /// # Errors
-/// [`EngineError`]: the exact solution or the integrator fails.
-pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
+/// [`CollisionError`]: the exact solution or the integrator fails.
+pub fn reference(contact: Contact) -> Result<Collision, CollisionError> {
     if contact.damping() > 0.0 || !contact.obeys_paper() {
         Ok(Collider::with_tolerances(EmbeddedPair::Dop853, 1e-15, 1e-15).collide(contact)?)
     } else {

@@ -1,8 +1,8 @@
 //! What a study of convergence is about.
 
-use stickslip_model::{Contact, InvalidParameter};
+use stickslip_model::{Contact, InvalidValue};
 
-use crate::error::InvalidConvergence;
+use crate::error::StudyError;
 use crate::limits::MOST_STIFFNESS;
 use crate::paper::{Reading, STIFFNESS};
 
@@ -18,8 +18,8 @@ impl Settings {
     /// 0.1, 0.2, … 1.9.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: the damping is out of its range.
-    pub fn usual(damping: f64) -> Result<Self, InvalidParameter> {
+    /// [`InvalidValue`]: the damping is out of its range.
+    pub fn usual(damping: f64) -> Result<Self, InvalidValue> {
         let points = Reading::kappas(STIFFNESS)
             .into_iter()
             .flat_map(|kappa| (1..20).map(move |tenths| (kappa, f64::from(tenths) / 10.0)));
@@ -30,17 +30,19 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidConvergence`]: there is no collision, or one is too stiff or of another law.
-    pub fn validate(&self) -> Result<(), InvalidConvergence> {
-        if self.contacts.is_empty() {
-            return Err(InvalidConvergence::NoContacts);
-        }
+    /// [`StudyError::Settings`]: there is no collision, or one is too stiff; [`StudyError::Law`].
+    pub fn validate(&self) -> Result<(), StudyError> {
+        let count = self.contacts.len();
+        InvalidValue::check("collisions", count, "at least one", count > 0)?;
         for contact in &self.contacts {
             contact.require_paper("the convergence")?;
         }
-        match self.contacts.iter().find(|contact| contact.kappa() > MOST_STIFFNESS) {
-            Some(stiff) => Err(InvalidConvergence::Stiff { kappa: stiff.kappa() }),
-            None => Ok(()),
+        for kappa in self.contacts.iter().map(Contact::kappa) {
+            if kappa > MOST_STIFFNESS {
+                let expected = format!("a number above 0, at most {MOST_STIFFNESS:?}");
+                return Err(InvalidValue::new("kappa", kappa, expected).into());
+            }
         }
+        Ok(())
     }
 }

@@ -10,9 +10,9 @@
 use std::f64::consts::PI;
 
 use stickslip_model::exact;
-use stickslip_model::{Collision, Contact, InvalidParameter, largest};
+use stickslip_model::{Collision, Contact, InvalidValue, largest};
 
-pub use crate::error::StiffError;
+use crate::error::StudyError;
 use crate::search::{highest, root};
 
 /// (5/4)^{3/5}, the largest value of x^{3/2}: the factor that the bound (27) of Schwager, Becker
@@ -58,14 +58,14 @@ pub struct Crest {
 /// ```
 ///
 /// # Errors
-/// [`StiffError::Parameter`] unless κ > 0 and 0 < ψ < 2: from ψ = 2 on nothing oscillates;
-/// [`StiffError::Exact`] if κ is more than the exact engine takes; [`StiffError::Search`] if the
+/// [`StudyError::Settings`] unless κ > 0 and 0 < ψ < 2: from ψ = 2 on nothing oscillates;
+/// [`StudyError::Exact`] if κ is more than the exact engine takes; [`StudyError::Search`] if the
 /// search fails.
-pub fn envelope(kappa: f64, psi: f64) -> Result<Crest, StiffError> {
+pub fn envelope(kappa: f64, psi: f64) -> Result<Crest, StudyError> {
     envelope_within(kappa, psi, SMOOTH)
 }
 
-fn envelope_within(kappa: f64, psi: f64, tolerance: f64) -> Result<Crest, StiffError> {
+fn envelope_within(kappa: f64, psi: f64, tolerance: f64) -> Result<Crest, StudyError> {
     let start = collide(kappa, require_inside(psi)?)?;
     let side = 1.0_f64.copysign(start.final_velocity);
     let height = |psi| collide(kappa, psi).map(|collision| side * collision.final_velocity);
@@ -92,7 +92,7 @@ pub fn oscillation(kappa: f64, psi: f64) -> f64 {
 ///
 /// # Errors
 /// As [`envelope`].
-pub fn largest_restitution(kappa: f64, lowest: f64) -> Result<Crest, StiffError> {
+pub fn largest_restitution(kappa: f64, lowest: f64) -> Result<Crest, StudyError> {
     let lowest = require_inside(lowest)?;
     let height = |psi| collide(kappa, psi).map(|collision| collision.eps_t().abs());
     // No oscillation is higher than the last one, which lasts to ψ = 2, has two switches and costs
@@ -133,7 +133,7 @@ pub struct Excess {
 ///
 /// # Errors
 /// As [`envelope`].
-pub fn excess() -> Result<Excess, StiffError> {
+pub fn excess() -> Result<Excess, StudyError> {
     // The maximum and the two ends are known to lie between these values of ln κ.
     let [low, middle, high] = [1.0_f64, 1.5, 3.0].map(f64::ln);
     let top = |log: f64| envelope_within(log.exp(), 1.0, SHARP);
@@ -144,24 +144,21 @@ pub fn excess() -> Result<Excess, StiffError> {
     Ok(Excess { worst: top(log)?, ratio: ratio(log)?, kappa })
 }
 
-fn require_inside(psi: f64) -> Result<f64, StiffError> {
-    if psi > 0.0 && psi < 2.0 {
-        return Ok(psi);
-    }
-    let expected = "a number above 0 and below 2";
-    Err(InvalidParameter { name: "psi", value: psi, expected }.into())
+fn require_inside(psi: f64) -> Result<f64, StudyError> {
+    InvalidValue::check("psi", psi, "a number above 0 and below 2", psi > 0.0 && psi < 2.0)?;
+    Ok(psi)
 }
 
 /// The contact without damping.
-pub(super) fn contact(kappa: f64, psi: f64) -> Result<Contact, StiffError> {
+pub(super) fn contact(kappa: f64, psi: f64) -> Result<Contact, StudyError> {
     Ok(Contact::new(kappa, psi, 0.0)?)
 }
 
-fn collide(kappa: f64, psi: f64) -> Result<Collision, StiffError> {
+fn collide(kappa: f64, psi: f64) -> Result<Collision, StudyError> {
     Ok(exact::collide(contact(kappa, psi)?)?)
 }
 
-fn crest(kappa: f64, psi: f64) -> Result<Crest, StiffError> {
+fn crest(kappa: f64, psi: f64) -> Result<Crest, StudyError> {
     let collision = collide(kappa, psi)?;
     let [last_onset, last_stick] = match collision.switches[..] {
         [.., stick, slip] => [stick.time_left, stick.time_left - slip.time_left],
@@ -188,8 +185,8 @@ fn eighth(kappa: f64, psi: f64) -> f64 {
 fn climb(
     kappa: f64,
     psi: f64,
-    height: impl Fn(f64) -> Result<f64, StiffError>,
-) -> Result<(f64, f64), StiffError> {
+    height: impl Fn(f64) -> Result<f64, StudyError>,
+) -> Result<(f64, f64), StudyError> {
     let above = |psi: f64| (psi + eighth(kappa, psi)).min(2.0);
     let below = |psi: f64| (psi - eighth(kappa, psi)).max(0.5 * psi);
     let start = height(psi)?;

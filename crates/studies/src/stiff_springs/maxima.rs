@@ -1,10 +1,10 @@
 //! What is measured of full collisions at one stiffness.
 
-use stickslip_model::{Collider, exact};
+use stickslip_model::{Collider, CollisionFailure, exact};
 use stickslip_plane::Range;
 
-use super::limit::{self, Crest, StiffError, contact};
-use crate::error::{CollisionFailure, StudyError};
+use super::limit::{self, Crest, contact};
+use crate::error::StudyError;
 
 /// Up to this stiffness the integrator, whose work grows as √κ, repeats what the exact engine
 /// found.
@@ -39,7 +39,7 @@ impl LargestVelocity {
     pub fn measure(kappa: f64, psi: f64) -> Result<Self, StudyError> {
         let crest = limit::envelope(kappa, psi)?;
         let integrated = if kappa <= MOST_INTEGRATED { integrated(&crest)? } else { f64::NAN };
-        let collision = exact::collide(contact(kappa, psi)?).map_err(StiffError::from)?;
+        let collision = exact::collide(contact(kappa, psi)?)?;
         let (contact_time, switch_count) = (collision.contact_time, collision.switches.len());
         // Without a switch nothing swings.
         let time_of_switches =
@@ -72,7 +72,7 @@ fn integrated(crest: &Crest) -> Result<f64, StudyError> {
 ///
 /// # Errors
 /// A collision cannot be computed.
-pub fn single(kappa: Range, psi: f64) -> Result<Vec<(f64, f64)>, StiffError> {
+pub fn single(kappa: Range, psi: f64) -> Result<Vec<(f64, f64)>, StudyError> {
     if kappa.low > MOST_RESOLVED {
         return Ok(Vec::new());
     }

@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use stickslip_model::{exact, inner};
 
-use super::limit::{self, StiffError, contact};
+use super::limit::{self, contact};
 use super::settings::Settings;
+use crate::error::StudyError;
 
 /// Stiffnesses at which collisions are compared, if they are within the interval of the study.
 const COMPARED: [f64; 3] = [1e4, 1e6, 1e8];
@@ -69,7 +70,7 @@ pub struct OtherStart {
 impl Profile {
     /// # Errors
     /// A collision cannot be computed.
-    pub fn measure(settings: &Settings) -> Result<Self, StiffError> {
+    pub fn measure(settings: &Settings) -> Result<Self, StudyError> {
         // An onset at the end itself is not one; this close to the end F is 1e-13.
         let zero_phase = within(inner::phase(1e-30), 1.0);
         let nearest =
@@ -112,7 +113,7 @@ fn oscillation(
     kappa: f64,
     psi: f64,
     zero_phase: f64,
-) -> Result<Vec<ComparedCollision>, StiffError> {
+) -> Result<Vec<ComparedCollision>, StudyError> {
     let width = limit::oscillation(kappa, psi);
     let across = (0..COLLISIONS).map(|i| psi + width * (spaced(i, COLLISIONS) - 0.5));
     let inside = across.filter(|psi| *psi > 0.0 && *psi < 2.0);

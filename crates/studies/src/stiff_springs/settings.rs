@@ -1,8 +1,8 @@
 //! What a study of stiff springs is about.
 
+use stickslip_model::InvalidValue;
 use stickslip_plane::Range;
 
-use crate::error::InvalidStiffSprings;
 use crate::limits::{MOST_PSI, STIFFNESSES};
 
 /// The stiffnesses and impact ratios of a study.
@@ -25,23 +25,24 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidStiffSprings`]: a setting is out of range.
-    pub fn validate(&self) -> Result<(), InvalidStiffSprings> {
+    /// [`InvalidValue`] names the first that is out of range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         let Range { low, high } = self.kappa;
-        if !(STIFFNESSES.low <= low && low < high && high <= STIFFNESSES.high) {
-            return Err(InvalidStiffSprings::Kappa { low, high });
+        let (least, most) = (STIFFNESSES.low, STIFFNESSES.high);
+        if !(least <= low && low < high && high <= most) {
+            let expected = format!("LO:HI with {least:?} <= LO < HI <= {most:?}");
+            return Err(InvalidValue::new("kappa", [low, high], expected));
         }
         let count = self.psi.len();
         if !(1..=MOST_PSI).contains(&count) {
-            return Err(InvalidStiffSprings::PsiCount { count });
+            let expected = format!("1 to {MOST_PSI}");
+            return Err(InvalidValue::new("psi: the number of values", count, expected));
         }
         for (index, &psi) in self.psi.iter().enumerate() {
-            if !(psi > 0.0 && psi < 2.0) {
-                return Err(InvalidStiffSprings::Psi { psi });
-            }
-            if self.psi[..index].contains(&psi) {
-                return Err(InvalidStiffSprings::PsiTwice { psi });
-            }
+            let expected = "numbers above 0 and below 2, from where on there is no switch";
+            InvalidValue::check("psi", psi, expected, psi > 0.0 && psi < 2.0)?;
+            let once = !self.psi[..index].contains(&psi);
+            InvalidValue::check("psi", psi, "each value once", once)?;
         }
         Ok(())
     }

@@ -4,8 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::{Collision, Contact, inner};
+use stickslip_studies::StudyError;
 use stickslip_studies::stiff_springs::limit::{
-    BOUND_FACTOR, StiffError, envelope, excess, largest_restitution,
+    BOUND_FACTOR, envelope, excess, largest_restitution,
 };
 
 fn collide(kappa: f64, psi: f64) -> Collision {
@@ -88,10 +89,10 @@ fn the_printed_bound_is_exceeded_and_the_corrected_one_is_not() {
 #[test]
 fn parameters_are_checked() {
     for psi in [0.0, -1.0, 2.0, f64::NAN] {
-        assert!(matches!(envelope(10.0, psi), Err(StiffError::Parameter(_))), "{psi}");
-        assert!(matches!(largest_restitution(10.0, psi), Err(StiffError::Parameter(_))), "{psi}");
+        assert!(matches!(envelope(10.0, psi), Err(StudyError::Settings(_))), "{psi}");
+        assert!(matches!(largest_restitution(10.0, psi), Err(StudyError::Settings(_))), "{psi}");
     }
-    assert!(matches!(envelope(0.0, 1.0), Err(StiffError::Parameter(_))));
+    assert!(matches!(envelope(0.0, 1.0), Err(StudyError::Settings(_))));
     let stiff = envelope(2e16, 1.0).unwrap_err();
-    assert!(matches!(stiff, StiffError::Exact(ExactError::Domain(_))), "{stiff}");
+    assert!(matches!(stiff, StudyError::Exact(ExactError::Domain(_))), "{stiff}");
 }

@@ -2,8 +2,9 @@
 
 use stickslip_model::{Collider, CollisionError, Contact, Damping, Law, Normal};
 use stickslip_solver::{Dopri5, EmbeddedPair, Options, StepSize};
+use stickslip_studies::StudyError;
 use stickslip_studies::convergence::{
-    Coordinates, InvalidConvergence, Settings, Switching, integrate, measure, reference,
+    Coordinates, Settings, Switching, integrate, measure, reference,
 };
 
 const FIXED: Options = Options {
@@ -66,7 +67,7 @@ fn other_laws_are_refused() {
         assert!(matches!(found, Err(CollisionError::Law(_))));
     }
     let settings = Settings { contacts: vec![contact] };
-    assert!(matches!(settings.validate(), Err(InvalidConvergence::Law(_))));
+    assert!(matches!(settings.validate(), Err(StudyError::Law(_))));
 }
 
 #[test]

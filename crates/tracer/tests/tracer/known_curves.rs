@@ -203,7 +203,7 @@ fn bad_input_is_named() {
     let family = any(Guards(vec![|p| p.x]));
     let options = TraceOptions { max_step: 0.5, ..exact() };
     let error = trace(&family, &SQUARE, &options).unwrap_err();
-    assert_eq!(error.to_string(), "max_step is 0.5, expected above 0 to 0.25");
+    assert_eq!(error.to_string(), "max_step = 0.5 is out of range; expected above 0 to 0.25");
     let empty = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 0.0) };
     let error = trace(&family, &empty, &exact()).unwrap_err();
     assert_eq!(error, TraceError::Window { window: empty });

@@ -8,8 +8,8 @@ use stickslip_solver::{
     SwitchEvent, run_with,
 };
 
-use super::CollisionError;
 use super::account::Observed;
+use crate::engines::error::CollisionError;
 
 /// Integrates one collision into `collision`, while `course` observes the run too.
 pub fn collide<O: Observer<Mode, STATE>>(

@@ -1,6 +1,6 @@
 //! What a reader of documents refuses.
 
-use stickslip_model::InvalidParameter;
+use stickslip_model::InvalidValue;
 use stickslip_tracer::{Finding, SubdivisionError};
 
 use super::layout::SCHEMA;
@@ -39,7 +39,7 @@ pub enum DocumentError {
     Chart(Chart),
     /// No collision has the dampings and the law of the window.
     #[error("window: {0}")]
-    Law(#[from] InvalidParameter),
+    Law(#[from] InvalidValue),
     /// The damping is negative.
     #[error("window.damping = {damping:?}: expected 0 or above")]
     Damping {

@@ -2,7 +2,7 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, DynamicDense, DynamicEvent, DynamicObserver, DynamicStart,
-    DynamicSwitch, DynamicSystem, Guard, InvalidOption, Options, Outcome, RunError, StepSize,
+    DynamicSwitch, DynamicSystem, Guard, Options, Outcome, RunError, StepSize,
 };
 
 use super::{Boxed, Plain, go, places};
@@ -225,9 +225,7 @@ fn bad_input_gives_typed_errors() {
         assert!(matches!(error(&[0.0, 1.0], end, &options), RunError::Span { .. }));
     }
     let bad = Options { rtol: f64::NAN, ..options };
-    let expected = RunError::Option(InvalidOption { name: "rtol", value: 0.0, expected: "" });
-    let found = error(&[0.0, 1.0], 1.0, &bad);
-    assert_eq!(std::mem::discriminant(&found), std::mem::discriminant(&expected));
+    assert!(matches!(error(&[0.0, 1.0], 1.0, &bad), RunError::Option(_)));
     let found = error(&[0.0, f64::INFINITY], 1.0, &options);
     assert_eq!(found, RunError::State { s: 0.0, component: 1 });
     let found = error(&[f64::NAN, 1.0], 1.0, &options);

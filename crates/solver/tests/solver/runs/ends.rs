@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_solver::{
     Closures, Dense, Direction, Dop853, EmbeddedPair, Guard, Observer, Options, Outcome, RunError,
-    State, Unfinished,
+    State,
 };
 
 use super::{Log, at, ball, bounce, fixed, line, start_of_line, thrown};
@@ -86,7 +86,10 @@ fn an_observer_stops_the_run() {
         assert_eq!((end.outcome, log.switches.len()), (Outcome::Stopped, stop_after));
         let place = stop_after as f64 / 20.0 - 0.003;
         assert!((end.s - place).abs() < 1e-14 && (end.state[0] - place).abs() < 1e-14);
-        assert_eq!(end.finished(), Err(Unfinished { outcome: Outcome::Stopped, s: end.s }));
+        assert_eq!(
+            end.finished(),
+            Err(RunError::Unfinished { outcome: Outcome::Stopped, s: end.s })
+        );
     }
     // At a switch that changes something, with the state after it.
     let mut log = Log { stop_after: 2, ..Log::default() };
@@ -136,13 +139,13 @@ fn only_regular_ends_are_finished() {
     ] {
         let early = go(options, 5.0);
         assert_eq!(early.outcome, expected);
-        assert_eq!(early.finished(), Err(Unfinished { outcome: expected, s: early.s }));
+        assert_eq!(early.finished(), Err(RunError::Unfinished { outcome: expected, s: early.s }));
     }
     let start = at(0.0, [0.0, 1.0]);
     let zeno = run(Dop853, &thrown(), start, 100.0, &Options::default(), &mut ()).unwrap();
     assert!(matches!(zeno.outcome, Outcome::Zeno { .. }));
     let error = zeno.finished().unwrap_err();
-    assert_eq!((error.outcome, error.s), (zeno.outcome, zeno.s));
+    assert_eq!(error, RunError::Unfinished { outcome: zeno.outcome, s: zeno.s });
     assert!(error.to_string().contains("ended early"));
 }
 

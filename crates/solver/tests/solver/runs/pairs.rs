@@ -1,6 +1,6 @@
 //! Pairs that are chosen at run time.
 
-use stickslip_solver::{Dop853, Dopri5, EmbeddedPair, Method, Options, UnknownEmbeddedPair};
+use stickslip_solver::{Dop853, Dopri5, EmbeddedPair, InvalidValue, Method, Options};
 
 use super::{at, ball};
 use crate::erased::{run, run_with};
@@ -31,6 +31,6 @@ fn pairs_have_the_names_and_numbers_of_methods() {
     assert_eq!(format!("{:>8}", EmbeddedPair::Dopri5), "  dopri5");
     assert_eq!(
         "RK45".parse::<EmbeddedPair>(),
-        Err(UnknownEmbeddedPair { name: "RK45".to_owned() })
+        Err(InvalidValue::new("method", "RK45", "\"dopri5\" or \"dop853\""))
     );
 }

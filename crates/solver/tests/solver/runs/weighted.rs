@@ -45,10 +45,14 @@ fn each_component_has_its_tolerance() {
 #[test]
 fn tolerances_of_components_are_checked() {
     let ball = ball();
-    let refused = |tolerances| Weighted::new(&ball, tolerances).err().map(|e| (e.name, e.value));
+    let refused = |tolerances| {
+        let error = Weighted::new(&ball, tolerances).err()?;
+        Some((error.name.into_owned(), error.value))
+    };
+    let invalid = |name: &str, value: f64| Some((name.to_owned(), value.into()));
     assert_eq!(refused([(1e-6, 1e-6), (1e-15, 1e300)]), None);
-    assert_eq!(refused([(1e-6, 1e-6), (0.2, 1.0)]), Some(("rtol of a component", 0.2)));
-    assert_eq!(refused([(1e-6, 0.0), (0.2, 1.0)]), Some(("atol of a component", 0.0)));
+    assert_eq!(refused([(1e-6, 1e-6), (0.2, 1.0)]), invalid("rtol of a component", 0.2));
+    assert_eq!(refused([(1e-6, 0.0), (0.2, 1.0)]), invalid("atol of a component", 0.0));
     assert!(refused([(f64::NAN, 1.0), (1e-3, 1.0)]).is_some());
     assert!(refused([(1e-3, f64::INFINITY), (1e-3, 1.0)]).is_some());
 }

@@ -1,0 +1,56 @@
+//! Why a collision cannot be computed.
+
+use stickslip_contact::domain::OutOfDomain;
+use stickslip_contact::{Contact, NotFinite, OtherLaw};
+use stickslip_exact::exact::ExactError;
+use stickslip_solver::{Outcome, RunError};
+
+/// The reason why an engine has no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CollisionError {
+    /// The exact solution does not apply to the contact.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+    /// The contact is out of the integrator's range.
+    #[error(transparent)]
+    Domain(#[from] OutOfDomain),
+    /// The integration failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The contact has another law than the paper's.
+    #[error(transparent)]
+    Law(#[from] OtherLaw),
+    /// The contact did not end.
+    #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
+    Unfinished {
+        /// The reason why the run stopped.
+        outcome: Outcome,
+        /// Scaled time reached.
+        time: f64,
+    },
+    /// A result is beyond the range of doubles.
+    #[error(transparent)]
+    NotFinite(#[from] NotFinite),
+}
+
+/// A collision cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: {source}")]
+pub struct CollisionFailure {
+    /// Scaled stiffness of the contact.
+    pub kappa: f64,
+    /// Its reduced impact ratio.
+    pub psi: f64,
+    /// Its scaled damping.
+    pub damping: f64,
+    /// What the engine reports.
+    pub source: CollisionError,
+}
+
+impl CollisionFailure {
+    /// The failure of an engine at `contact`.
+    pub fn new(contact: &Contact, source: impl Into<CollisionError>) -> Self {
+        let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
+        Self { kappa, psi, damping, source: source.into() }
+    }
+}
