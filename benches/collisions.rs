@@ -9,8 +9,9 @@ use benches::contacts::{self, contacts};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use stickslip::model::regularized::{self, Phase, Regularized};
 use stickslip::model::{Collider, Collision, Contact, exact};
+use stickslip::solver::method::{Step, Trial};
 use stickslip::solver::{
-    Dop853, Guard, HybridSystem, Method, Options, Start, State, Step, StepSize, Trial, run,
+    Dop853, Guard, HybridSystem, Method, Options, Start, State, StepSize, run,
 };
 
 fn random_collisions(criterion: &mut Criterion) {

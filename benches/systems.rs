@@ -5,8 +5,9 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use stickslip::solver::dynamic::run_dynamic;
 use stickslip::solver::{
-    Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run, run_dynamic,
+    Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run,
 };
 use stickslip_expression::System;
 

@@ -3,7 +3,8 @@
 //!
 //! Run with `cargo run --release --example steel_spheres`.
 
-use stickslip::model::{BodyPair, Collider, Material, Surface};
+use stickslip::model::Collider;
+use stickslip::model::spheres::{BodyPair, Material, Surface};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };

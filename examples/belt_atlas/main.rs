@@ -30,7 +30,8 @@ mod closed_form;
 
 use std::error::Error;
 
-use stickslip::solver::{Dop853, Margin, Options, Place};
+use stickslip::solver::margin::{Margin, Place};
+use stickslip::solver::{Dop853, Options};
 use stickslip::tracer::{
     Cubic, Curve, HybridFamily, Itinerary, Location, Point, Problem, Subdivision, TraceOptions,
     VerifyOptions, trace, verify,

@@ -1,6 +1,6 @@
 //! Any family of runs as one type, so that the tracer is compiled once for all of them.
 
-use stickslip::solver::Margin;
+use stickslip::solver::margin::Margin;
 use stickslip::tracer::{Family, FamilyError, FreeRun, Itinerary, Point};
 
 /// A family of runs of a hybrid system.

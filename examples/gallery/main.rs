@@ -31,7 +31,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use stickslip::plane::progress::InParallel;
-use stickslip::solver::{Dop853, Margin, Options, Place};
+use stickslip::solver::margin::{Margin, Place};
+use stickslip::solver::{Dop853, Options};
 use stickslip::tracer::{
     Atlas, AtlasOptions, Family, FamilyError, HybridFamily, Itinerary, Point, Problem, Surveyor,
     TraceOptions, VerifyOptions, Watch, Window,

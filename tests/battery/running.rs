@@ -3,10 +3,12 @@
 use std::fmt;
 use std::time::Instant;
 
+use stickslip::solver::dynamic::{
+    DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, run_dynamic,
+};
 use stickslip::solver::{
-    DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, Guard, HybridSystem, Method,
-    Number, Observer, Options, Outcome, ReadableSystem, RunError, Start, State, SwitchEvent, run,
-    run_dynamic,
+    Guard, HybridSystem, Method, Number, Observer, Options, Outcome, ReadableSystem, RunError,
+    Start, State, SwitchEvent, run,
 };
 
 use super::{Case, ExpectedOutcome, Place, Verdict};

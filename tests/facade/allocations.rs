@@ -6,10 +6,8 @@ use std::hint::black_box;
 use crate::common::cases;
 use allocation_counter::measure;
 use stickslip::model::regularized::{END, Phase, Regularized};
-use stickslip::model::{
-    Collider, Collision, Contact, Encounter, FEW_SWITCHES, Material, Motion, Sphere, Surface,
-    Vector3, exact,
-};
+use stickslip::model::spheres::{Encounter, Material, Motion, Sphere, Surface, Vector3};
+use stickslip::model::{Collider, Collision, Contact, FEW_SWITCHES, exact};
 use stickslip::solver::{Dop853, Dopri5, Options, Outcome, Start, run};
 
 const UNDAMPED: [&str; 3] = ["undamped_random", "undamped_paper", "undamped_hard"];

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use rayon::prelude::*;
 use stickslip::model::{Collider, exact};
 use stickslip::plane::{CollisionFamily, CollisionPlane};
-use stickslip::solver::{Margin, Place};
+use stickslip::solver::margin::{Margin, Place};
 use stickslip::tracer::{
     Location, Node, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };

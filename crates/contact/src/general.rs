@@ -17,7 +17,8 @@
 //! Both the limit and the tangential force may vanish with a power of u at both ends of contact.
 //! The power they share is divided out of the guards.
 
-use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, Step, Trial};
+use stickslip_solver::method::{Step, Trial};
+use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State};
 
 pub(crate) mod equations;
 mod exponents;

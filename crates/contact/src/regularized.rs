@@ -29,7 +29,8 @@
 //! compiled for the two regimes of the paper's law, and its results stay the same, bit for bit. A
 //! test integrates the paper's law through both.
 
-use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, Step, Trial};
+use stickslip_solver::method::{Step, Trial};
+use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State};
 
 pub mod components;
 pub mod derivatives;

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use stickslip_model::Contact;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::BoundaryKind;
-use stickslip_solver::{Margin, Place};
+use stickslip_solver::margin::{Margin, Place};
 use stickslip_tracer::{
     Atlas, AtlasOptions, Point, Serial, Side, SpecialPoint, Stretch, Surveyor, TraceOptions,
     VerifyOptions, Watch, Window,

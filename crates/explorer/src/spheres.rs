@@ -2,9 +2,11 @@
 
 use serde::Deserialize;
 use serde_json::{Value, json};
+use stickslip_model::history::Moment;
+use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_model::{
-    BodyPair, Collider, Collision, Contact, Engine, InvalidValue, Material, Moment, Reduction,
-    Regime, Side, Surface, document, exact, linear, presets,
+    Collider, Collision, Contact, Engine, InvalidValue, Reduction, Regime, Side, document, exact,
+    linear, presets,
 };
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Statistics;

@@ -2,7 +2,8 @@
 
 mod align;
 
-use stickslip_solver::{Dop853, InvalidValue, Margin, Options, RunError};
+use stickslip_solver::margin::Margin;
+use stickslip_solver::{Dop853, InvalidValue, Options, RunError};
 use stickslip_tracer::{
     DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun,
     Itinerary, Point,

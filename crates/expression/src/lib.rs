@@ -8,7 +8,8 @@
 //!
 //! ```
 //! use stickslip_expression::System;
-//! use stickslip_solver::{Dop853, Options, run_dynamic};
+//! use stickslip_solver::{Dop853, Options};
+//! use stickslip_solver::dynamic::run_dynamic;
 //!
 //! let system = System::parse(
 //!     r#"

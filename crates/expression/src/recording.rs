@@ -1,9 +1,9 @@
 //! A run of a system with everything that happened.
 
-use stickslip_solver::{
-    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, EmbeddedPair, Grazing,
-    Options, Outcome, Pole, Preempted, Rest, RunError, run_dynamic_with,
+use stickslip_solver::dynamic::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, run_dynamic_with,
 };
+use stickslip_solver::{EmbeddedPair, Grazing, Options, Outcome, Pole, Preempted, Rest, RunError};
 
 use crate::run::Runnable;
 

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 use stickslip_number::Number;
-use stickslip_solver::{DynamicStart, Guard, InvalidValue, ReadableDynamic, Schedule, Times};
+use stickslip_solver::dynamic::{DynamicStart, ReadableDynamic};
+use stickslip_solver::{Guard, InvalidValue, Schedule, Times};
 
 use crate::program::Program;
 use crate::system::Next;

@@ -86,7 +86,8 @@ impl System {
     /// let found = ball.sensitivities(&by, &[0.5], EmbeddedPair::Dop853, None, &options)?;
     /// let second = &found.places[1];
     /// assert!((second.s - 1.5).abs() < 1e-13);
-    /// assert!((second.s_by[0] - 1.0).abs() < 1e-12 && (second.s_by[1] - 3.0 / 9.81).abs() < 1e-12);
+    /// assert!((second.s_by[0] - 1.0).abs() < 1e-12 && (second.s_by[1] - 3.0 / 9.81).abs() <
+    /// 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -9,7 +9,7 @@ use crate::engines::{Engine, Estimate};
 /// The layout of a [`Collision`](crate::Collision). The number at the end of a layout rises when a
 /// field disappears or changes its meaning.
 pub const COLLISION: &str = "stickslip.collision/1";
-/// The layout of an [`ImpactReport`](crate::ImpactReport).
+/// The layout of an [`ImpactReport`](crate::spheres::ImpactReport).
 pub const IMPACT: &str = "stickslip.impact/1";
 
 /// `result` as one object with the layout `schema`. The object also says what computed the result:

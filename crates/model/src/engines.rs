@@ -243,8 +243,8 @@ impl Engine {
     /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
     ///
     /// # Errors
-    /// [`CollisionError::Collision`]: the contact is out of the integrator's range, or the integration
-    /// fails.
+    /// [`CollisionError::Collision`]: the contact is out of the integrator's range, or the
+    /// integration fails.
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         let history = match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {

@@ -16,8 +16,8 @@
 //! | `stickslip-contact` | [`Law`]: a contact law as data; [`presets`]: laws of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems; what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
 //! | `stickslip-exact` | [`exact`]: the solution of the paper's law; [`linear`]: the solution of linear contacts |
 //! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
-//! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
-//! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |
+//! | [`spheres`] | SI units: [`quantity`](spheres::quantity), [`bodies`](spheres::bodies), [`scaling`](spheres::scaling) to a [`Contact`], [`encounter`](spheres::encounter) in three dimensions, its [`Outcome`](spheres::Outcome) and [`ImpactReport`](spheres::ImpactReport) |
+//! | [`limits`] | [`normal`](limits::normal), [`coulomb`](limits::coulomb), [`largest`](limits::largest), [`inner`](limits::inner): closed forms and limits to compare with |
 //!
 //! With the feature `serde`, results serialise themselves, and `document` says what computed them.
 //!
@@ -32,35 +32,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod engines;
+pub mod limits;
+pub mod spheres;
+
 #[cfg(feature = "serde")]
 pub mod document;
-mod engines;
-mod limits;
 #[cfg(feature = "serde")]
 mod serialize;
-mod spheres;
 
 pub use engines::error::{CollisionError, CollisionFailure};
-pub use engines::history::{History, Moment, PhaseHistory, Snapshot};
 #[doc(hidden)]
 pub use engines::integrator as collision;
 pub use engines::integrator::Collider;
-pub use engines::sensitivity::{Derived, Sensitivity};
 pub use engines::{Engine, Estimate, InvalidChoice, Tolerances};
 pub use engines::{history, integrator, sensitivity};
-pub use limits::{coulomb, inner, largest, normal};
-pub use nalgebra::Vector3;
-pub use spheres::bodies::{Body, Elasticity, Material, Sphere, Wall};
-pub use spheres::encounter::{Encounter, EncounterError, Motion, WallMotion};
-pub use spheres::forces::{Constants, Forces, InvalidForces};
-pub use spheres::moment::ForceSnapshot;
-pub use spheres::observed::Observed;
-pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
-pub use spheres::reduction::Reduction;
-pub use spheres::report::{Comparison, ImpactReport};
-pub use spheres::scaling::{BodyPair, Impact};
-pub use spheres::surface::Surface;
-pub use spheres::{bodies, encounter, quantity, scaling};
+pub use spheres::Reduction;
 #[doc(inline)]
 pub use stickslip_contact::domain::OutOfDomain;
 #[doc(inline)]

@@ -6,8 +6,8 @@ use serde::de::{self, Deserialize, Deserializer};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use stickslip_contact::{Contact, Law, Normal};
 
-use crate::Vector3;
 use crate::engines::{Engine, Tolerances};
+use crate::spheres::Vector3;
 use crate::spheres::encounter::{Encounter, Motion};
 use crate::spheres::outcome::EnergyAccount;
 use crate::spheres::report::ImpactReport;

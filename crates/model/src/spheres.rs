@@ -13,3 +13,15 @@ pub(crate) mod reduction;
 pub(crate) mod report;
 pub mod scaling;
 pub(crate) mod surface;
+
+pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
+pub use encounter::{Encounter, EncounterError, Motion, WallMotion};
+pub use forces::{Constants, Forces, InvalidForces};
+pub use moment::ForceSnapshot;
+pub use nalgebra::Vector3;
+pub use observed::Observed;
+pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
+pub use reduction::Reduction;
+pub use report::{Comparison, ImpactReport};
+pub use scaling::{BodyPair, Impact};
+pub use surface::Surface;

@@ -2,8 +2,10 @@
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
-use stickslip_model::{BodyPair, Collision, Contact, Engine, InvalidValue, Law, Side};
-use stickslip_solver::{Dop853, Margin, Options, Outcome, Start};
+use stickslip_model::spheres::BodyPair;
+use stickslip_model::{Collision, Contact, Engine, InvalidValue, Law, Side};
+use stickslip_solver::margin::Margin;
+use stickslip_solver::{Dop853, Options, Outcome, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
 };
@@ -131,11 +133,11 @@ impl CollisionPlane {
     /// values each. The normal velocity decides κ and the damping, and both together decide ψ.
     ///
     /// ```
-    /// use stickslip_model::{BodyPair, Material, Surface};
+    /// use stickslip_model::spheres::{BodyPair, Material, Surface};
     /// use stickslip_plane::{CollisionPlane, Range};
     ///
-    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-    /// let surface =
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3:
+    /// 7850.0 }; let surface =
     ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
     /// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
     /// let sides = [Range { low: 0.1, high: 10.0 }, Range { low: 0.01, high: 20.0 }];

@@ -2,7 +2,7 @@
 //! which |ε_t| is above 1, with their boundary.
 
 use stickslip_model::Contact;
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Atlas, AtlasOptions, Curve, Mismatch, Surveyor};
 
 use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options, unresolved};

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use stickslip_model::{BodyPair, Contact, InvalidValue, Law, Reduction};
+use stickslip_model::spheres::BodyPair;
+use stickslip_model::{Contact, InvalidValue, Law, Reduction};
 
 use crate::range::Range;
 

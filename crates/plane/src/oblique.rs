@@ -1,6 +1,7 @@
 //! Impacts of one speed at all angles.
 
-use stickslip_model::{BodyPair, Contact, InvalidValue, Reduction};
+use stickslip_model::spheres::BodyPair;
+use stickslip_model::{Contact, InvalidValue, Reduction};
 
 /// Two bodies that collide at one speed. The angle θ from the normal decides the normal velocity
 /// and the impact ratio g_t/g_n = tan θ = ψ μ/α.

@@ -8,7 +8,7 @@
 //! The two axes are x and y in the code: κ and ψ, or g_n and g_t in m/s.
 //!
 //! ```
-//! use stickslip_model::{BodyPair, Material, Surface};
+//! use stickslip_model::spheres::{BodyPair, Material, Surface};
 //! use stickslip_plane::{Range, progress};
 //! use stickslip_practice::tables::{self, Settings, Window};
 //!

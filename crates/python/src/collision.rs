@@ -4,7 +4,9 @@ use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use stickslip_figure::pictures;
 use stickslip_model::document::COLLISION;
-use stickslip_model::{Collider, Contact, Derived, Engine, History, Snapshot};
+use stickslip_model::history::{History, Snapshot};
+use stickslip_model::sensitivity::Derived;
+use stickslip_model::{Collider, Contact, Engine};
 use stickslip_solver::Statistics;
 
 use crate::arrays::numbers;

@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Recording, Runnable, SensitivityError, System};
 use stickslip_plane::progress::Report;
-use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
+use stickslip_solver::dynamic::DynamicSwitch;
+use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
 use stickslip_studies::own_system;
 

@@ -22,11 +22,11 @@ use std::sync::Arc;
 use pyo3::exceptions::PyRecursionError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use stickslip_solver::sliding::{Refusal, SlidingMode};
-use stickslip_solver::{
-    Dop853, Dopri5, DynamicObserver, DynamicRun, DynamicStart, EmbeddedPair, Options, Outcome,
-    RunError, Statistics, run_dynamic_backwards, run_dynamic_with,
+use stickslip_solver::dynamic::{
+    DynamicObserver, DynamicRun, DynamicStart, run_dynamic_backwards, run_dynamic_with,
 };
+use stickslip_solver::sliding::{Refusal, SlidingMode};
+use stickslip_solver::{Dop853, Dopri5, EmbeddedPair, Options, Outcome, RunError, Statistics};
 
 use crate::failure::bad_input;
 use arguments::{Output, Settings, Start, StartArguments, SystemArguments};

@@ -3,10 +3,11 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use stickslip_model::InvalidValue;
 use stickslip_model::document::IMPACT;
-use stickslip_model::{
-    Body, Elasticity, Encounter, Forces, ImpactReport, InvalidValue, Motion, Sphere, Vector3, Wall,
-    WallMotion, quantity,
+use stickslip_model::spheres::{
+    Body, Elasticity, Encounter, Forces, ImpactReport, Motion, Sphere, Vector3, Wall, WallMotion,
+    quantity,
 };
 use stickslip_practice::fit::Bodies;
 
@@ -50,12 +51,12 @@ pub struct BodyPair {
     sphere: Sphere,
     other: Body,
     forces: Forces,
-    reduced: stickslip_model::BodyPair,
+    reduced: stickslip_model::spheres::BodyPair,
 }
 
 impl BodyPair {
     /// What the contact feels of the bodies.
-    pub fn reduced(&self) -> stickslip_model::BodyPair {
+    pub fn reduced(&self) -> stickslip_model::spheres::BodyPair {
         self.reduced
     }
 
@@ -88,7 +89,8 @@ impl BodyPair {
         let constants = serde_json::from_str(&constants).map_err(bad_input)?;
         let law = |damping| LawChoice(law.clone(), damping).law();
         let forces = Forces::new(law(0.0)?.0, &constants).map_err(bad_input)?;
-        let reduced = stickslip_model::BodyPair::new(&sphere, &other, forces).map_err(bad_input)?;
+        let reduced =
+            stickslip_model::spheres::BodyPair::new(&sphere, &other, forces).map_err(bad_input)?;
         law(reduced.tangential_damping())?;
         Ok(Self { sphere, other, forces, reduced })
     }

@@ -6,7 +6,7 @@ use pyo3::types::{PyDict, PyDictMethods};
 use rayon::prelude::*;
 use stickslip_expression::System;
 use stickslip_plane::progress::{Progress, Report};
-use stickslip_solver::{DynamicRun, DynamicSwitch};
+use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
 
 use crate::background::watched;
 use crate::failure::bad_input;

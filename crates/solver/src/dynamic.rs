@@ -5,9 +5,8 @@
 //! small stack, and a mode has as many guards as it says.
 //!
 //! ```
-//! use stickslip_solver::{
-//!     Direction, Dop853, DynamicStart, DynamicSystem, Guard, Options, run_dynamic,
-//! };
+//! use stickslip_solver::{Direction, Dop853, Guard, Options};
+//! use stickslip_solver::dynamic::{DynamicStart, DynamicSystem, run_dynamic};
 //!
 //! /// Balls that fall on a floor, each with its height and its velocity; all keep half their
 //! /// velocity.

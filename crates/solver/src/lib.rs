@@ -126,7 +126,7 @@
 //! |---|---|
 //! | [`hybrid`] | what a user writes (a system with guards), and the results of a run |
 //! | `options`, `error` | settings of a run, and why it can fail |
-//! | `runs` | the loop from switch to switch; smooth problems, trajectories, runs without event location |
+//! | [`runs`] | the loop from switch to switch; smooth problems, trajectories, runs without event location |
 //! | `system` | a system as the loop and the events see it, of fixed or of any dimension |
 //! | `events` | one step and its guards: which guards fire first, and where |
 //! | [`mod@dynamic`] | systems whose dimension is known at run time |
@@ -134,6 +134,12 @@
 //! | [`mod@sliding`] | systems whose field jumps on surfaces, along which they may slide |
 //! | [`mod@margin`] | how near a run came to other switches |
 //! | [`sensitivity`] | derivatives of a run with respect to parameters |
+//!
+//! [`DynamicEvent::simultaneous`]: dynamic::DynamicEvent::simultaneous
+//! [`DynamicSystem`]: dynamic::DynamicSystem
+//! [`fn@margins`]: fn@margin::margins
+//! [`margins_dynamic`]: margin::margins_dynamic
+//! [`run_dynamic`]: dynamic::run_dynamic
 
 pub mod hybrid;
 
@@ -141,7 +147,7 @@ mod options;
 
 mod error;
 
-mod runs;
+pub mod runs;
 
 mod lists;
 
@@ -149,39 +155,25 @@ mod system;
 
 mod events;
 
+pub mod dynamic;
+
 pub mod method;
+
+pub mod sliding;
 
 pub mod margin;
 
 pub mod sensitivity;
 
-pub mod dynamic;
-
-pub mod sliding;
-
-pub use dynamic::{
-    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch,
-    DynamicSystem, ReadableDynamic, run_dynamic, run_dynamic_backwards, run_dynamic_with,
-};
 pub use error::RunError;
 pub use hybrid::{
     Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Preempted, ReadableSystem,
     Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times,
 };
-pub use margin::{
-    Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, follow_dynamic, margin,
-    margin_dynamic, margins, margins_dynamic,
-};
-pub use method::{
-    Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial, fit_order,
-};
+pub use method::{Dop853, Dopri5, EmbeddedPair, Method, State};
 pub use options::{Options, StepSize};
 pub use runs::{
-    Closures, Recorder, Sample, Samples, Segment, Trajectory, Weighted, integrate, run,
-    run_backwards, run_over_switches, run_with, smooth, trajectory,
-};
-pub use sensitivity::{
-    Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities, sensitivities_with,
+    Closures, Recorder, Sample, Samples, Weighted, integrate, run, run_backwards, run_with,
 };
 pub use stickslip_number::{Enclosure, GivenValue, Interval, InvalidValue, Number};
 

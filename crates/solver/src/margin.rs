@@ -120,7 +120,7 @@ where
 /// As [`fn@margins`], for a system whose dimension is known at run time.
 ///
 /// # Errors
-/// Those of [`run_dynamic`](crate::run_dynamic).
+/// Those of [`run_dynamic`](crate::dynamic::run_dynamic).
 pub fn margins_dynamic<M, S>(
     method: M,
     system: &S,
@@ -163,7 +163,7 @@ where
 /// As [`margin()`], for a system whose dimension is known at run time.
 ///
 /// # Errors
-/// Those of [`run_dynamic`](crate::run_dynamic).
+/// Those of [`run_dynamic`](crate::dynamic::run_dynamic).
 pub fn margin_dynamic<M, S>(
     method: M,
     system: &S,
@@ -223,7 +223,7 @@ where
 /// As [`follow`], for a system whose dimension is known at run time.
 ///
 /// # Errors
-/// Those of [`run_dynamic`](crate::run_dynamic).
+/// Those of [`run_dynamic`](crate::dynamic::run_dynamic).
 pub fn follow_dynamic<M, S>(
     method: M,
     system: &S,

@@ -39,8 +39,8 @@ impl<Mode, const N: usize> Run<Mode, N> {
     /// The run, if it came to a regular end: the end of its span or a terminal guard.
     ///
     /// # Errors
-    /// [`RunError::Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
-    /// because the observer stopped it.
+    /// [`RunError::Unfinished`] if the run ended early: at a limit, at an accumulation of switches,
+    /// or because the observer stopped it.
     pub fn finished(self) -> Result<Self, RunError> {
         RunError::unless_regular(self.outcome, self.s).map(|()| self)
     }

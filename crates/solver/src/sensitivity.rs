@@ -92,10 +92,8 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 /// bound towards a graze.
 ///
 /// ```
-/// use stickslip_solver::{
-///     Change, Differentiable, Direction, Dop853, Guard, HybridSystem, Options, Start, State,
-///     sensitivities,
-/// };
+/// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+/// use stickslip_solver::sensitivity::{Change, Differentiable, sensitivities};
 ///
 /// /// A ball that bounces on the floor. Its coefficient of restitution is the parameter.
 /// struct Ball(f64);

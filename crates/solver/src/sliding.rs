@@ -15,8 +15,9 @@
 //! Control and Optimization*, 1992, chapter 2); with one surface, the field is the one above.
 //!
 //! A [`Switched`] system states its field for given signs, and its surfaces. [`Filippov`] makes an
-//! ordinary hybrid system of it, so that [`run`](crate::run), [`margins`](fn@crate::margins),
-//! [`sensitivities`](fn@crate::sensitivities) and all else can be had of it.
+//! ordinary hybrid system of it, so that [`run`](crate::run),
+//! [`margins`](fn@crate::margin::margins), [`sensitivities`](fn@crate::sensitivity::sensitivities)
+//! and all else can be had of it.
 //!
 //! ```
 //! use stickslip_solver::{Dop853, Number, Options, Start, State, run};

@@ -7,7 +7,8 @@ use stickslip_figure::Svg;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use stickslip_plane::progress::{Progress, Report};
-use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome, RunError, Statistics};
+use stickslip_solver::dynamic::DynamicSwitch;
+use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError, Statistics};
 
 use crate::error::StudyError;
 use crate::study::{Cell, Column, Picture, Study, Table};

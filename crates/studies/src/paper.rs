@@ -3,7 +3,8 @@
 //!
 //! No other module has a number of its own for them.
 
-use stickslip_model::{Material, Reduction};
+use stickslip_model::Reduction;
+use stickslip_model::spheres::Material;
 
 /// Friction and inertia of all figures: μ = 0.4, homogeneous spheres.
 pub const REDUCTION: Reduction = Reduction::HOMOGENEOUS;

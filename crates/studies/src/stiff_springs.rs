@@ -15,7 +15,7 @@ mod tables;
 
 use rayon::prelude::*;
 use serde_json::json;
-use stickslip_model::inner::{self, Peak};
+use stickslip_model::limits::inner::{self, Peak};
 use stickslip_plane::Range;
 use stickslip_plane::progress::{Progress, Report};
 

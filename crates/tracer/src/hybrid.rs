@@ -1,9 +1,13 @@
 //! Hybrid systems with two parameters as families of runs.
 
+use stickslip_solver::dynamic::{
+    DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem, run_dynamic,
+};
+use stickslip_solver::margin::{
+    Margin, Margins, NearMiss, Place, margin, margin_dynamic, margins, margins_dynamic,
+};
 use stickslip_solver::{
-    DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem, HybridSystem, Margin,
-    Margins, Method, NearMiss, Observer, Options, Outcome, Place, RunError, Start, SwitchEvent,
-    margin, margin_dynamic, margins, margins_dynamic, run, run_dynamic,
+    HybridSystem, Method, Observer, Options, Outcome, RunError, Start, SwitchEvent, run,
 };
 
 use crate::family::{Family, FreeRun};
@@ -97,9 +101,9 @@ impl Itinerary {
 
 /// The runs of a problem.
 ///
-/// The label of a run is its [`Itinerary`]. Margins are the solver's, [`stickslip_solver::Margin`];
-/// they are complete if the start of the run and every transition without a
-/// [condition](HybridSystem::transition_condition) are smooth.
+/// The label of a run is its [`Itinerary`]. Margins are the solver's,
+/// [`stickslip_solver::margin::Margin`]; they are complete if the start of the run and every
+/// transition without a [condition](HybridSystem::transition_condition) are smooth.
 ///
 /// A run that accumulates switches or fails has no margins. Where such runs begin, the trace
 /// reports changes of the label as unresolved, with the labels on both sides; [`Self::outcome`]

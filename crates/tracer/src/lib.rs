@@ -66,8 +66,8 @@
 //! assert!(network.curves[0].nodes.iter().all(|node| on_second(&node.point)));
 //!
 //! let regions = Subdivision::new(window, network.curves, network.vertices, 1e-9)?;
-//! let Location::Region(region) = regions.locate(&Point::new(0.6, 0.55)) else { panic!("a boundary") };
-//! // In this region the guard fires twice before the end, at two bounces.
+//! let Location::Region(region) = regions.locate(&Point::new(0.6, 0.55)) else { panic!("a
+//! boundary") }; // In this region the guard fires twice before the end, at two bounces.
 //! assert_eq!(regions.regions()[region].label, Some(Itinerary::Fires(vec![0, 0])));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

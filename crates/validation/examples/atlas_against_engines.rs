@@ -15,7 +15,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use stickslip::model::{Collider, exact};
 use stickslip::plane::CollisionPlane;
-use stickslip::solver::Margin;
+use stickslip::solver::margin::Margin;
 use stickslip::tracer::{
     Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };

@@ -15,7 +15,8 @@ use rayon::prelude::*;
 use stickslip::model::{
     Collider, Collision, CollisionError, Contact, Damping, Engine, Law, linear, presets,
 };
-use stickslip::solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
+use stickslip::solver::method::{Order, fit_order};
+use stickslip::solver::{EmbeddedPair, Options, StepSize};
 
 /// Steps in an octave.
 const PER_OCTAVE: i32 = 4;

@@ -11,8 +11,9 @@ use stickslip_files::output::csv::Rows;
 use stickslip_files::output::file::publish;
 use stickslip_files::output::impact_rows::{self, EVENTS};
 use stickslip_files::output::json;
-use stickslip_model::quantity::{self, Quantity};
-use stickslip_model::{CollisionFailure, Encounter, Engine, ImpactReport, Law, document};
+use stickslip_model::spheres::quantity::{self, Quantity};
+use stickslip_model::spheres::{Encounter, ImpactReport};
+use stickslip_model::{CollisionFailure, Engine, Law, document};
 
 use crate::error::Failure;
 use crate::output::console::print;

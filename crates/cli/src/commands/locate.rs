@@ -9,7 +9,7 @@ use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::publish;
 use stickslip_files::output::rows::{LOCATED, LOCATED_RUNS};
 use stickslip_plane::atlas::switch_count;
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Atlas, Itinerary, Location, Point};
 
 use crate::error::Failure;

@@ -13,7 +13,8 @@ use stickslip_files::output::csv::CsvFile;
 use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome, Rest};
+use stickslip_solver::dynamic::DynamicSwitch;
+use stickslip_solver::{EmbeddedPair, Options, Outcome, Rest};
 
 use crate::error::Failure;
 use crate::output::console::print;

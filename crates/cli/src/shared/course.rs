@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::builder::TypedValueParser;
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::StoredFile;
-use stickslip_model::{
-    Collision, Encounter, ForceSnapshot, History, Moment, Regime, Side, Snapshot,
-};
+use stickslip_model::history::{History, Moment, Snapshot};
+use stickslip_model::spheres::{Encounter, ForceSnapshot};
+use stickslip_model::{Collision, Regime, Side};
 
 use super::files::{Named, require_different};
 use crate::error::Failure;

@@ -7,10 +7,10 @@ use std::process::{Command, Stdio};
 
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
-use stickslip_model::{
-    Collider, Elasticity, Encounter, Material, Motion, Sphere, Surface, Vector3, Wall, WallMotion,
-    exact,
+use stickslip_model::spheres::{
+    Elasticity, Encounter, Material, Motion, Sphere, Surface, Vector3, Wall, WallMotion,
 };
+use stickslip_model::{Collider, exact};
 
 use crate::{Ran, Workspace, stickslip_in};
 

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use stickslip_model::{BodyPair, Collider, Contact, Material, Surface, exact};
+use stickslip_model::spheres::{BodyPair, Material, Surface};
+use stickslip_model::{Collider, Contact, exact};
 
 use crate::{Workspace, npz, rows, version_in_maps};
 

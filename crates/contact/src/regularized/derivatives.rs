@@ -1,7 +1,8 @@
 //! The derivatives of the system with respect to its parameters, by dual numbers in the equations.
 
 use num_dual::Dual64;
-use stickslip_solver::{Change, Differentiable, State};
+use stickslip_solver::State;
+use stickslip_solver::sensitivity::{Change, Differentiable};
 
 use super::Regularized;
 use super::components::{STATE, U, array};

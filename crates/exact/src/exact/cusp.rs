@@ -17,7 +17,7 @@
 
 use stickslip_contact::Contact;
 use stickslip_contact::phase::OTHER_SIDE;
-use stickslip_solver::{Exit, Margin, Place};
+use stickslip_solver::margin::{Exit, Margin, Place};
 
 use super::flank::{at_first_turn, at_split};
 use super::moment::Motion;

@@ -26,7 +26,7 @@ use std::f64::consts::PI;
 
 use stickslip_contact::Contact;
 use stickslip_contact::phase::{OTHER_SIDE, SAME_SIDE};
-use stickslip_solver::{Exit, Hint, Margin, Place};
+use stickslip_solver::margin::{Exit, Hint, Margin, Place};
 
 use super::cusp;
 use super::error::{ExactError, checked, too_many};
@@ -162,8 +162,9 @@ pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactErr
 }
 
 /// The margin `which` with hints that fit the collision of `contact`, as
-/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged.
-/// Only the margin of a half swing's single top gets the name that [`margins`] would give it.
+/// [`stickslip_solver::margin::margin()`] returns it. A margin that does not exist is returned
+/// unchanged. Only the margin of a half swing's single top gets the name that [`margins`] would
+/// give it.
 ///
 /// # Errors
 /// As [`margin`].

@@ -1,7 +1,7 @@
 //! Names of margins and of exits: half swings and guards as numbers, and back.
 
 use stickslip_contact::phase::{OTHER_SIDE, SAME_SIDE};
-use stickslip_solver::{Exit, Hint, Place};
+use stickslip_solver::margin::{Exit, Hint, Place};
 
 /// The number in the name of the margin of a slip phase at its first turn.
 pub const TURN: usize = 0;

@@ -1,8 +1,9 @@
 //! Modes that slide along a surface, and runs that go on behind an accumulation.
 
 use stickslip_expression::{By, InvalidValue, Recording, System, SystemFamily};
+use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
 use stickslip_solver::sliding::{SampledFilippov, Side, TwoFields};
-use stickslip_solver::{Dop853, DynamicStart, EmbeddedPair, Options, Outcome, run_dynamic};
+use stickslip_solver::{Dop853, EmbeddedPair, Options, Outcome};
 
 const BELT: &str = "parameter belt = 0.5, friction = 0.8\nstate x = -0.3, v = belt\n\
                     x' = v\nv' = -x - friction*sign(v - belt)\n\

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip_expression::{Runnable, System};
-use stickslip_solver::{DynamicRun, DynamicSwitch, EmbeddedPair, Options};
+use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
+use stickslip_solver::{EmbeddedPair, Options};
 
 fn run(runnable: &Runnable) -> (DynamicRun<usize>, Vec<DynamicSwitch<usize>>) {
     let found = runnable.record(EmbeddedPair::Dop853, runnable.end(), &Options::default());

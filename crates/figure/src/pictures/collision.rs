@@ -1,6 +1,7 @@
 //! The picture of one collision: forces above, velocity below, against time.
 
-use stickslip_model::{Collision, Contact, History, Normal};
+use stickslip_model::history::History;
+use stickslip_model::{Collision, Contact, Normal};
 
 use super::course::{self, Course};
 use crate::canvas::number::number;

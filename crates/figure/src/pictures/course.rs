@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use stickslip_model::{Collision, History, PhaseHistory, Regime, Side, Snapshot};
+use stickslip_model::history::{History, PhaseHistory, Snapshot};
+use stickslip_model::{Collision, Regime, Side};
 
 use crate::canvas::Legend;
 use crate::canvas::panel::{LINEAR, Panel};

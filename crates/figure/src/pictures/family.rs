@@ -1,6 +1,6 @@
 //! The picture of an atlas of any family.
 
-use stickslip_solver::{Margin, Place};
+use stickslip_solver::margin::{Margin, Place};
 use stickslip_tracer::{Atlas, Itinerary, Location, Point, Unresolved};
 
 use super::regions;

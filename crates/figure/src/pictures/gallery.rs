@@ -1,6 +1,7 @@
 //! The picture of many collisions: the forces of each in a small panel of its own.
 
-use stickslip_model::{Collision, History};
+use stickslip_model::Collision;
+use stickslip_model::history::History;
 
 use super::collision::{FORCE, TIME};
 use super::course::{self, Course};

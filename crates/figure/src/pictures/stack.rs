@@ -2,7 +2,7 @@
 
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_plane::stack::{DampingChange, DampingLayer, DampingStack};
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Change, Effect, Itinerary, Layer, Stack};
 
 use super::atlas::{KINDS, boundaries, stroke};

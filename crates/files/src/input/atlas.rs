@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use stickslip_plane::atlas::{Atlas, Document, SCHEMA};
 use stickslip_plane::sealed;
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::Itinerary;
 
 use super::{json, source};

@@ -15,7 +15,8 @@ mod velocities;
 
 use std::path::Path;
 
-use stickslip_model::{Body, BodyPair, Encounter, Law, Sphere};
+use stickslip_model::Law;
+use stickslip_model::spheres::{Body, BodyPair, Encounter, Sphere};
 
 use super::source;
 use crate::error::FileError;

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use stickslip_model::quantity::Quantity;
-use stickslip_model::{Contact, Law, quantity};
+use stickslip_model::spheres::quantity;
+use stickslip_model::spheres::quantity::Quantity;
+use stickslip_model::{Contact, Law};
 
 use crate::input::number::{self, NotANumber, SYNTAX};
 

@@ -1,7 +1,8 @@
 //! The rows of results and of switches of impacts in the CSV files of a batch. The names are those
 //! of the JSON of one impact.
 
-use stickslip_model::{ForceSwitch, ImpactReport, Side};
+use stickslip_model::Side;
+use stickslip_model::spheres::{ForceSwitch, ImpactReport};
 
 use super::csv::Rows;
 

@@ -4,7 +4,8 @@ use std::fs;
 
 use serde_json::{Value, json};
 use stickslip_files::input::bodies::read_pair;
-use stickslip_model::{BodyPair, Law, Material, Surface};
+use stickslip_model::Law;
+use stickslip_model::spheres::{BodyPair, Material, Surface};
 
 fn sphere(height_m: f64, velocity_m_per_s: [f64; 3]) -> Value {
     json!({

@@ -14,7 +14,8 @@ use stickslip_contact::regularized::components::{STATE, T, U, V, W};
 use stickslip_contact::regularized::derivatives::PARAMETERS;
 use stickslip_contact::regularized::equations::Parameter;
 use stickslip_contact::{Contact, Regime};
-use stickslip_solver::{Change, Outcome, Start, State, SwitchSensitivity, sensitivities_with};
+use stickslip_solver::sensitivity::{Change, SwitchSensitivity, sensitivities_with};
+use stickslip_solver::{Outcome, Start, State};
 
 use super::error::CollisionError;
 use super::integrator::Collider;

@@ -16,7 +16,7 @@ use crate::engines::error::CollisionError;
 /// [`slide`] integrates the same contact.
 ///
 /// ```
-/// use stickslip_model::coulomb;
+/// use stickslip_model::limits::coulomb;
 ///
 /// assert_eq!(coulomb::restitution(4.0, 1.0), 0.5);
 /// assert_eq!(coulomb::restitution(1.0, 1.0), 0.0);
@@ -30,7 +30,7 @@ pub fn restitution(psi: f64, eps_n: f64) -> f64 {
 /// not pure sliding.
 ///
 /// ```
-/// use stickslip_model::coulomb;
+/// use stickslip_model::limits::coulomb;
 ///
 /// assert_eq!(coulomb::pragmatic(1.0, 1.0, -0.2), -0.2);
 /// ```
@@ -64,7 +64,7 @@ pub struct Sliding {
 /// The errors of both coefficients are below 1e-12.
 ///
 /// ```
-/// use stickslip_model::coulomb::{self, NormalLaw};
+/// use stickslip_model::limits::coulomb::{self, NormalLaw};
 ///
 /// let dashpot = NormalLaw { half_powers: 0, damping: 0.4 };
 /// let sliding = coulomb::slide(dashpot, 3.0)?;

@@ -21,7 +21,7 @@
 //! forms to 2e-15.
 //!
 //! ```
-//! use stickslip_model::inner;
+//! use stickslip_model::limits::inner;
 //!
 //! let last = inner::last_half_swing(0.119493019326600);
 //! assert!((last.final_velocity().unwrap() - inner::peak().velocity).abs() < 1e-13);
@@ -180,7 +180,7 @@ pub struct Peak {
 /// − (2/5)x^{5/2} = 4.4848423519475….
 ///
 /// ```
-/// use stickslip_model::inner::{HalfSwing, peak};
+/// use stickslip_model::limits::inner::{HalfSwing, peak};
 ///
 /// let peak = peak();
 /// let found = HalfSwing::from_onset(peak.onset);

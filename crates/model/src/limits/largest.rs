@@ -13,7 +13,8 @@ pub const FORCE: f64 = 1.1432626298183158660;
 /// is longest where the velocity vanishes.
 ///
 /// ```
-/// use stickslip_model::{Contact, exact, largest};
+/// use stickslip_model::{Contact, exact};
+/// use stickslip_model::limits::largest;
 ///
 /// let collision = exact::collide(Contact::new(18.0, 1.5, 0.0)?)?;
 /// let largest = largest::spring(&collision).ok_or("damped")?;

@@ -23,7 +23,7 @@ const C4: f64 = 0.348742675260385035;
 /// at F_n = 0 adds (4/15) a^{5/2} times the power 3/2 of that.
 ///
 /// ```
-/// assert!((stickslip_model::normal::series(0.01) - 0.988547439643).abs() < 2e-11);
+/// assert!((stickslip_model::limits::normal::series(0.01) - 0.988547439643).abs() < 2e-11);
 /// ```
 #[must_use]
 pub fn series(damping: f64) -> f64 {
@@ -40,7 +40,7 @@ pub fn series(damping: f64) -> f64 {
 /// (1 + b₁d)/(1 + b₁d + C₁d² + b₁C₁d³ + (2/5)C₁²d⁴), b₁ = 2/(3C₁²).
 ///
 /// ```
-/// assert!((stickslip_model::normal::pade(0.2) - 0.800965).abs() < 3e-4);
+/// assert!((stickslip_model::limits::normal::pade(0.2) - 0.800965).abs() < 3e-4);
 /// ```
 #[must_use]
 pub fn pade(damping: f64) -> f64 {

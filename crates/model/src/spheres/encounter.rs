@@ -47,11 +47,12 @@ pub struct WallMotion {
 /// angular momentum about any point are conserved to rounding.
 ///
 /// ```
-/// use stickslip_model::{Collider, Encounter, Material, Motion, Sphere, Surface, Vector3};
+/// use stickslip_model::Collider;
+/// use stickslip_model::spheres::{Encounter, Material, Motion, Sphere, Surface, Vector3};
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
-/// let sphere = Sphere::homogeneous(0.02, &steel);
+/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0
+/// }; let sphere = Sphere::homogeneous(0.02, &steel);
 /// let rest = Motion {
 ///     position_m: Vector3::zeros(),
 ///     velocity_m_per_s: Vector3::zeros(),
@@ -66,9 +67,9 @@ pub struct WallMotion {
 /// let collision = Collider::default().collide(encounter.contact())?;
 /// let outcome = encounter.outcome(&collision);
 /// let [first, second] = outcome.motions;
-/// assert!((first.velocity_m_per_s.z - 0.0).abs() < 1e-9 && (second.velocity_m_per_s.z + 20.0).abs() < 1e-9);
-/// let momentum = first.velocity_m_per_s + second.velocity_m_per_s - falling.velocity_m_per_s;
-/// assert!(momentum.norm() < 1e-14);
+/// assert!((first.velocity_m_per_s.z - 0.0).abs() < 1e-9 && (second.velocity_m_per_s.z +
+/// 20.0).abs() < 1e-9); let momentum = first.velocity_m_per_s + second.velocity_m_per_s -
+/// falling.velocity_m_per_s; assert!(momentum.norm() < 1e-14);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,13 +165,13 @@ impl Encounter {
     /// The first one comes from above: n is along z and t along x. g_t = 0 is a central impact.
     ///
     /// ```
-    /// use stickslip_model::{Body, BodyPair, Encounter, Material, Sphere, Surface};
+    /// use stickslip_model::spheres::{Body, BodyPair, Encounter, Material, Sphere, Surface};
     ///
-    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-    /// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
-    /// let sphere = Sphere::homogeneous(0.02, &steel);
-    /// let encounter = Encounter::of_velocities(&sphere, &Body::Sphere(sphere), (20.0, 4.0), &surface)?;
-    /// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3:
+    /// 7850.0 }; let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9,
+    /// damping_time_s: 0.0 }; let sphere = Sphere::homogeneous(0.02, &steel);
+    /// let encounter = Encounter::of_velocities(&sphere, &Body::Sphere(sphere), (20.0, 4.0),
+    /// &surface)?; let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
     /// assert_eq!(encounter.impact, pair.impact(20.0, 4.0)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

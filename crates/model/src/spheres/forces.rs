@@ -100,7 +100,8 @@ impl Forces {
     /// The law `law` with `constants`.
     ///
     /// ```
-    /// use stickslip_model::{Body, BodyPair, Constants, Elasticity, Forces, Sphere, presets};
+    /// use stickslip_model::presets;
+    /// use stickslip_model::spheres::{Body, BodyPair, Constants, Elasticity, Forces, Sphere};
     ///
     /// let law = presets::find("gran/hooke/history").ok_or("no such law")?.law;
     /// let constants = Constants {

@@ -28,16 +28,18 @@ impl Encounter {
     /// tangential.
     ///
     /// ```
-    /// use stickslip_model::{Body, Encounter, Engine, Material, Sphere, Surface};
+    /// use stickslip_model::Engine;
+    /// use stickslip_model::spheres::{Body, Encounter, Material, Sphere, Surface};
     ///
-    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-    /// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
-    /// let sphere = Sphere::homogeneous(0.02, &steel);
-    /// let encounter = Encounter::of_velocities(&sphere, &Body::Sphere(sphere), (20.0, 4.0), &surface)?;
-    /// let history = Engine::Auto.history(encounter.contact())?;
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3:
+    /// 7850.0 }; let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9,
+    /// damping_time_s: 0.0 }; let sphere = Sphere::homogeneous(0.02, &steel);
+    /// let encounter = Encounter::of_velocities(&sphere, &Body::Sphere(sphere), (20.0, 4.0),
+    /// &surface)?; let history = Engine::Auto.history(encounter.contact())?;
     /// let middle = history.at(0.5 * history.duration()).ok_or("outside the contact")?;
     /// let middle = encounter.snapshot(&middle);
-    /// assert!((middle.normal_force_n / encounter.impact.largest_normal_force_n() - 1.0).abs() < 1e-10);
+    /// assert!((middle.normal_force_n / encounter.impact.largest_normal_force_n() - 1.0).abs() <
+    /// 1e-10);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]

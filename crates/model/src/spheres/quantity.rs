@@ -7,7 +7,7 @@ use stickslip_contact::InvalidValue;
 /// A quantity in SI units: its name, which contains the unit, and its range.
 ///
 /// ```
-/// use stickslip_model::quantity;
+/// use stickslip_model::spheres::quantity;
 ///
 /// assert_eq!(quantity::RADIUS.check(0.02)?, 0.02);
 /// let error = quantity::RADIUS.check(-0.02).unwrap_err().to_string();

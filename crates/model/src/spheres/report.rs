@@ -12,12 +12,13 @@ use crate::limits::{coulomb, normal};
 /// With the feature `serde` it becomes the JSON object that `stickslip impact` prints.
 ///
 /// ```
-/// use stickslip_model::{Encounter, Engine, ImpactReport, Material, Motion, Sphere, Surface};
-/// use stickslip_model::{Vector3, Wall, WallMotion};
+/// use stickslip_model::Engine;
+/// use stickslip_model::spheres::{Encounter, ImpactReport, Material, Motion, Sphere, Surface};
+/// use stickslip_model::spheres::{Vector3, Wall, WallMotion};
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
-/// let sphere = Sphere::homogeneous(0.02, &steel);
+/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0
+/// }; let sphere = Sphere::homogeneous(0.02, &steel);
 /// let zero = Vector3::zeros();
 /// let falling = Motion {
 ///     position_m: Vector3::new(0.0, 0.0, 0.02),
@@ -59,11 +60,11 @@ pub struct Comparison {
     /// ε_t of pure Coulomb sliding with the ε_n of the collision, [`coulomb::restitution`]; `None`
     /// in a central impact, or if the normal force may attract.
     pub eps_t_coulomb: Option<f64>,
-    /// [`Impact::mindlin_stiffness_kg_per_s2`](crate::Impact::mindlin_stiffness_kg_per_s2); `None`
+    /// [`Impact::mindlin_stiffness_kg_per_s2`](super::Impact::mindlin_stiffness_kg_per_s2); `None`
     /// where the normal force is linear.
     pub mindlin_stiffness_kg_per_s2: Option<f64>,
-    /// [`BodyPair::mindlin_kappa`](crate::BodyPair::mindlin_kappa); `None` where the normal force
-    /// is linear.
+    /// [`BodyPair::mindlin_kappa`](crate::spheres::BodyPair::mindlin_kappa); `None` where the
+    /// normal force is linear.
     pub mindlin_kappa: Option<f64>,
     /// Largest compression ξ in m without damping.
     pub undamped_compression_m: f64,

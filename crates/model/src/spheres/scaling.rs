@@ -15,11 +15,11 @@ const POSITIVE: &str = "a finite number above 0";
 /// Two colliding bodies, reduced to the numbers on which their contact depends.
 ///
 /// ```
-/// use stickslip_model::{BodyPair, Material, Surface};
+/// use stickslip_model::spheres::{BodyPair, Material, Surface};
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
-/// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
+/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0
+/// }; let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
 /// let impact = pair.impact(20.0, 4.0)?;
 /// assert!((impact.largest_normal_force_n() / 146.4e3 - 1.0).abs() < 1e-3);
 /// # Ok::<(), stickslip_model::InvalidValue>(())

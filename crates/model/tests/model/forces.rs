@@ -1,10 +1,10 @@
 //! Contact laws in SI units, against the parameters with which LAMMPS ran.
 
 use serde_json::Value;
-use stickslip_model::{
-    Body, BodyPair, Constants, Contact, Damping, Elasticity, Forces, InvalidForces, Law, Material,
-    Normal, Sphere, Surface, Tangential,
+use stickslip_model::spheres::{
+    Body, BodyPair, Constants, Elasticity, Forces, InvalidForces, Material, Sphere, Surface,
 };
+use stickslip_model::{Contact, Damping, Law, Normal, Tangential};
 
 use crate::common::file;
 use crate::lammps::contact;

@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
+use stickslip_model::history::{History, Snapshot};
+use stickslip_model::limits::largest;
 use stickslip_model::{
-    Collider, Collision, CollisionError, Contact, Engine, History, Regime, Snapshot, Tolerances,
-    exact, largest,
+    Collider, Collision, CollisionError, Contact, Engine, Regime, Tolerances, exact,
 };
 use stickslip_solver::{Dop853, Options, Outcome, Statistics};
 

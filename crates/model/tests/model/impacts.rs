@@ -3,9 +3,11 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit};
-use stickslip_model::{
-    Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, Sphere, Surface, Vector3,
-    Wall, WallMotion, encounter::TOUCH,
+use stickslip_model::Collider;
+use stickslip_model::spheres::encounter::TOUCH;
+use stickslip_model::spheres::{
+    Elasticity, Encounter, EncounterError, Motion, Outcome, Sphere, Surface, Vector3, Wall,
+    WallMotion,
 };
 
 /// Random numbers that depend on the seed alone (splitmix64).

@@ -1,6 +1,6 @@
 //! The largest values of a collision.
 
-use stickslip_model::largest::FORCE;
+use stickslip_model::limits::largest::FORCE;
 
 #[test]
 fn the_largest_force_is_that_of_the_largest_compression() {

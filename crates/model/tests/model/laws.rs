@@ -2,10 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use stickslip_model::general::GeneralContact;
+use stickslip_model::history::Snapshot;
+use stickslip_model::regularized::Regularized;
 use stickslip_model::{
     Collider, Collision, CollisionError, Contact, Damping, End, Engine, HistoryOf, Law, Normal,
-    Regime, Snapshot, SpringEnergy, Tangential, exact, general::GeneralContact, presets,
-    regularized::Regularized,
+    Regime, SpringEnergy, Tangential, exact, presets,
 };
 
 use stickslip_solver::Dop853;

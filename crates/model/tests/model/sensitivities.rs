@@ -2,7 +2,8 @@
 
 use crate::common::{cases, number};
 use serde_json::Value;
-use stickslip_model::{Collider, Contact, Derived};
+use stickslip_model::sensitivity::Derived;
+use stickslip_model::{Collider, Contact};
 use stickslip_solver::Dopri5;
 
 /// The largest error of results and of their derivatives, relative to the largest of the same kind
@@ -23,7 +24,7 @@ fn error(expected: &[&Value], found: &[Derived]) -> f64 {
 }
 
 /// The largest errors over all references: of final states, and of times.
-fn largest(sensitivity: impl Fn(Contact) -> stickslip_model::Sensitivity) -> [f64; 2] {
+fn largest(sensitivity: impl Fn(Contact) -> stickslip_model::sensitivity::Sensitivity) -> [f64; 2] {
     let mut largest = [0.0_f64; 2];
     for case in cases("sensitivities") {
         let found = sensitivity(case.contact);

@@ -1,10 +1,10 @@
 //! Names and order of the fields of serialised results.
 
 use serde_json::{Value, json};
-use stickslip_model::{
-    Collision, Contact, Encounter, Engine, ImpactReport, Material, Motion, Sphere, Surface,
-    Tolerances, Vector3, Wall, WallMotion,
+use stickslip_model::spheres::{
+    Encounter, ImpactReport, Material, Motion, Sphere, Surface, Vector3, Wall, WallMotion,
 };
+use stickslip_model::{Collision, Contact, Engine, Tolerances};
 
 /// The layout of a value: the names of an object in order, the layout of an array's first element,
 /// and the kind of everything else.

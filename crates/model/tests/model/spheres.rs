@@ -2,10 +2,12 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use stickslip_model::{
-    Body, BodyPair, Collider, Contact, Elasticity, Encounter, EncounterError, Material, Motion,
-    Outcome, Sphere, Surface, Vector3, Wall, WallMotion, coulomb, normal,
+use stickslip_model::limits::{coulomb, normal};
+use stickslip_model::spheres::{
+    Body, BodyPair, Elasticity, Encounter, EncounterError, Material, Motion, Outcome, Sphere,
+    Surface, Vector3, Wall, WallMotion,
 };
+use stickslip_model::{Collider, Contact};
 
 const STEEL: Material =
     Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };

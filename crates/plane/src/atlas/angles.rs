@@ -26,11 +26,11 @@ impl Oblique {
     /// 1e-9.
     ///
     /// ```
-    /// use stickslip_model::{BodyPair, Material, Surface};
+    /// use stickslip_model::spheres::{BodyPair, Material, Surface};
     /// use stickslip_plane::{Oblique, Range};
     ///
-    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
-    /// let surface =
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3:
+    /// 7850.0 }; let surface =
     ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
     /// let oblique = Oblique::new(BodyPair::equal_spheres(0.02, &steel, &surface)?, 20.0)?;
     /// let found = oblique.boundaries(Range { low: 0.1, high: 1.5 })?;

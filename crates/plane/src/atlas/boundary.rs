@@ -3,7 +3,7 @@
 use stickslip_model::general::Mode;
 use stickslip_model::regularized::{OTHER_SIDE, Phase};
 use stickslip_model::{Contact, Regime, Side};
-use stickslip_solver::{Margin, Place};
+use stickslip_solver::margin::{Margin, Place};
 
 use crate::family::general;
 

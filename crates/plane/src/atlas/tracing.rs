@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use stickslip_model::{Collider, Contact};
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
     AtlasOptions, Curve, Extremum, Network, Node, Point, Subdivision, Survey, Surveyor,
     TraceOptions, Tracer, Unresolved, Vertex, Window,
@@ -86,7 +86,7 @@ pub fn trace<'w>(
 /// cancels, the division is what was found so far, and its report says so.
 ///
 /// ```
-/// use stickslip_model::{BodyPair, Material, Surface};
+/// use stickslip_model::spheres::{BodyPair, Material, Surface};
 /// use stickslip_plane::{CollisionPlane, Range, atlas, progress};
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };

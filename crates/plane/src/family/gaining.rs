@@ -4,7 +4,7 @@
 //! is smooth, so that the boundary has another margin for each itinerary.
 
 use stickslip_model::general::CREST;
-use stickslip_solver::{Exit, Margin, Place};
+use stickslip_solver::margin::{Exit, Margin, Place};
 use stickslip_tracer::{Family, FreeRun, Point};
 
 use super::general::{self, BEYOND_GUARDS, GeneralFamily};

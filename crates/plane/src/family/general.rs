@@ -13,10 +13,8 @@
 use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, STATE};
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
-use stickslip_solver::{
-    Dop853, Exit, Followed, Margin, Margins, Observer, Options, Outcome, Place, Run, Start, State,
-    SwitchEvent, follow, margin, margins, run,
-};
+use stickslip_solver::margin::{Exit, Followed, Margin, Margins, Place, follow, margin, margins};
+use stickslip_solver::{Dop853, Observer, Options, Outcome, Run, Start, State, SwitchEvent, run};
 use stickslip_tracer::{FreeRun, Point};
 
 use super::CollisionPlane;

@@ -5,7 +5,7 @@ use stickslip_model::{Collider, Contact, exact};
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT, Watch};
 use stickslip_plane::{CollisionPlane, Range};
-use stickslip_solver::{Exit, Hint, Margin, Place};
+use stickslip_solver::margin::{Exit, Hint, Margin, Place};
 use stickslip_tracer::{Family, Finding, Location, VertexKind};
 
 use crate::laws::with_law;

@@ -1,4 +1,5 @@
-use stickslip_model::{BodyPair, Material, Reduction, Surface};
+use stickslip_model::Reduction;
+use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_plane::{Coordinates, Extent, Grid, GridAxis, Quantity, Range};
 
 fn axis(low: f64, high: f64, cells: usize) -> GridAxis {

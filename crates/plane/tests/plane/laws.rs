@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
-use stickslip_model::{BodyPair, Damping, End, Law, Material, Normal, Surface, presets};
+use stickslip_model::spheres::{BodyPair, Material, Surface};
+use stickslip_model::{Damping, End, Law, Normal, presets};
 use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
 use stickslip_plane::{CollisionPlane, Range};
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};
 
 use crate::windows::{frame, traced};

@@ -9,7 +9,7 @@ use stickslip_model::{Contact, InvalidValue};
 use stickslip_plane::atlas::{Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, stack};
-use stickslip_solver::{Hint, Margin, Place};
+use stickslip_solver::margin::{Hint, Margin, Place};
 
 use crate::windows::frame;
 

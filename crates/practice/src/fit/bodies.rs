@@ -1,6 +1,7 @@
 //! The bodies of a fit, and the numbers that may be fitted.
 
-use stickslip_model::{BodyPair, InvalidValue, Law, Normal, Sphere, Surface, Tangential, quantity};
+use stickslip_model::spheres::{BodyPair, Sphere, Surface, quantity};
+use stickslip_model::{InvalidValue, Law, Normal, Tangential};
 
 /// Two bodies whose surfaces are fitted; the second one is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use std::fmt::{Display, Write};
 
-use stickslip_model::{InvalidValue, Surface};
+use stickslip_model::InvalidValue;
+use stickslip_model::spheres::Surface;
 use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{ACROSS, ALONG};

@@ -1,6 +1,7 @@
 //! The settings of a table.
 
-use stickslip_model::{BodyPair, InvalidValue, Law};
+use stickslip_model::spheres::BodyPair;
+use stickslip_model::{InvalidValue, Law};
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::{CollisionPlane, Range};
 

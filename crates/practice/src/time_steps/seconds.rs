@@ -1,6 +1,6 @@
 //! Time steps in seconds, and the time of Rayleigh waves, in which many users measure their steps.
 
-use stickslip_model::{Encounter, Sphere};
+use stickslip_model::spheres::{Encounter, Sphere};
 
 use super::stepped::undamped_contact_time;
 
@@ -42,7 +42,7 @@ impl Seconds {
 /// Li, Y. Xu and C. Thornton, Powder Technol. 160, 219 (2005).
 ///
 /// ```
-/// use stickslip_model::{Material, Sphere};
+/// use stickslip_model::spheres::{Material, Sphere};
 /// use stickslip_practice::time_steps::rayleigh_time_s;
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };

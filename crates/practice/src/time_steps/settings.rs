@@ -1,6 +1,7 @@
 //! The settings of a study of time steps.
 
-use stickslip_model::{Contact, InvalidValue, Reduction, quantity};
+use stickslip_model::spheres::quantity;
+use stickslip_model::{Contact, InvalidValue, Reduction};
 
 use super::scheme::Scheme;
 

@@ -1,6 +1,7 @@
 //! Fits: of measured impacts, and of data whose parameters are known.
 
-use stickslip_model::{BodyPair, Law};
+use stickslip_model::Law;
+use stickslip_model::spheres::BodyPair;
 use stickslip_plane::{Range, progress::SILENT};
 use stickslip_practice::fit::{
     self, Bodies, Datum, Fit, Free, Measured, Minimum, Settings, Survey, Values,
@@ -199,8 +200,9 @@ fn damping_from_normal_restitution() {
 /// Impacts in SI units are those of the encounter in three dimensions.
 #[test]
 fn predictions_are_those_of_encounters() {
-    use stickslip_model::{Body, Wall, WallMotion};
-    use stickslip_model::{Encounter, Engine, Material, Motion, Sphere, Surface, Vector3};
+    use stickslip_model::Engine;
+    use stickslip_model::spheres::{Body, Wall, WallMotion};
+    use stickslip_model::spheres::{Encounter, Material, Motion, Sphere, Surface, Vector3};
     let glass = Material { young_modulus_pa: 70e9, poisson_ratio: 0.2, density_kg_per_m3: 2500.0 };
     let sphere = Sphere::homogeneous(1.5e-3, &glass);
     let surface =

@@ -1,9 +1,10 @@
 //! The two data sets of tests/data/oblique_impacts.json.
 
 use serde_json::Value;
-use stickslip_model::{
-    Body, BodyPair, Constants, Elasticity, Forces, Law, Material, Sphere, Wall, presets,
+use stickslip_model::spheres::{
+    Body, BodyPair, Constants, Elasticity, Forces, Material, Sphere, Wall,
 };
+use stickslip_model::{Law, presets};
 use stickslip_practice::fit::{Bodies, Datum, Measured, Values};
 
 /// The data of one experiment in the file.

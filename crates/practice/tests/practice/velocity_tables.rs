@@ -5,7 +5,8 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use fastrand::Rng;
-use stickslip_model::{Body, BodyPair, Engine, Law, Material, Sphere, Surface, Wall, presets};
+use stickslip_model::spheres::{Body, BodyPair, Material, Sphere, Surface, Wall};
+use stickslip_model::{Engine, Law, presets};
 use stickslip_plane::{Range, progress};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::Document;

@@ -6,7 +6,7 @@ use pyo3::types::{PyDict, PyTuple};
 use serde_json::Value;
 use stickslip_figure::pictures::family::draw_runs;
 use stickslip_plane::sealed;
-use stickslip_solver::{Margin, Place};
+use stickslip_solver::margin::{Margin, Place};
 use stickslip_tracer::{
     Atlas, AtlasOptions, Document, End, Followed, Itinerary, Location, Point, SCHEMA, SpecialPoint,
     VertexKind,

@@ -2,8 +2,9 @@
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
+use stickslip_solver::dynamic::DynamicRun;
 use stickslip_solver::sliding::Refusal;
-use stickslip_solver::{DynamicRun, Outcome, RunError};
+use stickslip_solver::{Outcome, RunError};
 
 use crate::hybrid::Regime;
 use crate::hybrid::system::System;

@@ -6,10 +6,9 @@ use std::sync::Arc;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
+use stickslip_solver::dynamic::{DynamicDense, DynamicEvent, DynamicObserver};
 use stickslip_solver::sliding::{Refusal, Side};
-use stickslip_solver::{
-    DynamicDense, DynamicEvent, DynamicObserver, Grazing, Pole, Preempted, Rest,
-};
+use stickslip_solver::{Grazing, Pole, Preempted, Rest};
 
 use crate::hybrid::segments::{Segments, fraction};
 use crate::hybrid::system::System;

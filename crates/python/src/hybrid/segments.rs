@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
-use stickslip_solver::DynamicDense;
+use stickslip_solver::dynamic::DynamicDense;
 
 use crate::failure::bad_input;
 

@@ -1,7 +1,8 @@
 //! Single collisions and their course in time.
 
 use stickslip_figure::pictures::course::Course;
-use stickslip_model::{Collision, CollisionFailure, Contact, Engine, History, Snapshot};
+use stickslip_model::history::{History, Snapshot};
+use stickslip_model::{Collision, CollisionFailure, Contact, Engine};
 use stickslip_studies::Cell;
 use stickslip_studies::paper::{Reading, psi};
 

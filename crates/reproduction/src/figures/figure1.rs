@@ -4,7 +4,7 @@ use serde_json::json;
 use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
-use stickslip_model::coulomb;
+use stickslip_model::limits::coulomb;
 use stickslip_plane::{GridAxis, Range};
 use stickslip_studies::paper::{ALPHA, MU, psi, ratio};
 use stickslip_studies::{Cell, Column, Picture, Study, Table};

@@ -6,7 +6,7 @@ use serde_json::json;
 use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
-use stickslip_model::{BodyPair, Surface};
+use stickslip_model::spheres::{BodyPair, Surface};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Range};
 use stickslip_studies::paper::{MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, ratio};
 use stickslip_studies::{Picture, Study};

@@ -4,7 +4,8 @@ use serde_json::json;
 use stickslip_figure::number;
 use stickslip_figure::pictures::collision::{self, PANEL_WIDTH};
 use stickslip_figure::pictures::course::Course;
-use stickslip_model::{Collision, History};
+use stickslip_model::Collision;
+use stickslip_model::history::History;
 use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
 use stickslip_studies::{Column, Picture, Study, Table};
 

@@ -2,7 +2,8 @@
 
 use stickslip_figure::pictures::grid;
 use stickslip_figure::pictures::map::{MapPanel, Values};
-use stickslip_model::{Engine, coulomb};
+use stickslip_model::Engine;
+use stickslip_model::limits::coulomb;
 use stickslip_plane::{Grid, Quantity, Tile, sweep};
 
 /// A grid with its collisions, by the exact solution.

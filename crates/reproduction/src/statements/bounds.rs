@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
-use stickslip_model::{coulomb, exact, largest};
+use stickslip_model::exact;
+use stickslip_model::limits::{coulomb, largest};
 use stickslip_studies::paper::{MOST_RATIO_3, MOST_STIFFNESS, Reading, psi};
 use stickslip_studies::search::{Optimum, maximum, maximum_near};
 

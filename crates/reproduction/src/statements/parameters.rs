@@ -1,8 +1,9 @@
 //! Statement 2, on the number of parameters.
 
 use fastrand::Rng;
+use stickslip_model::CollisionFailure;
 use stickslip_model::regularized::END;
-use stickslip_model::{BodyPair, CollisionFailure, Material, Surface};
+use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_solver::Outcome;
 use stickslip_studies::three_parameters::ThreeParameters;
 

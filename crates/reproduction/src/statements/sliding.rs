@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use fastrand::Rng;
-use stickslip_model::coulomb::{self, NormalLaw};
-use stickslip_model::{BodyPair, Surface, exact};
+use stickslip_model::exact;
+use stickslip_model::limits::coulomb::{self, NormalLaw};
+use stickslip_model::spheres::{BodyPair, Surface};
 use stickslip_studies::paper::{
     self, Reading, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, STIFFNESS,
 };

@@ -1,8 +1,7 @@
 //! Models of the spring, and the collisions with each.
 
-use stickslip_model::{
-    Collider, Collision, CollisionError, CollisionFailure, Contact, Engine, largest,
-};
+use stickslip_model::limits::largest;
+use stickslip_model::{Collider, Collision, CollisionError, CollisionFailure, Contact, Engine};
 use stickslip_studies::unreset;
 
 use crate::error::ReproductionError;

@@ -10,9 +10,8 @@ use crate::options::Options;
 /// As [`run_dynamic`], with a pair that is chosen at run time. Results are the same, bit for bit.
 ///
 /// ```
-/// use stickslip_solver::{
-///     DynamicStart, DynamicSystem, EmbeddedPair, Guard, Options, run_dynamic_with,
-/// };
+/// use stickslip_solver::{EmbeddedPair, Guard, Options};
+/// use stickslip_solver::dynamic::{DynamicStart, DynamicSystem, run_dynamic_with};
 ///
 /// struct Decay;
 ///

@@ -1,7 +1,7 @@
 //! Dense output of a dynamic step.
 
 /// The dense output of one step: a polynomial in the step fraction θ ∈ [0, 1] for every component,
-/// as in [`Dense`](crate::Dense). It borrows the buffers of the run.
+/// as in [`Dense`](crate::method::Dense). It borrows the buffers of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicDense<'a> {
     pub(super) s: f64,
@@ -19,9 +19,9 @@ impl<'a> DynamicDense<'a> {
     /// can be kept.
     ///
     /// ```
-    /// use stickslip_solver::{
-    ///     Dop853, DynamicDense, DynamicObserver, DynamicStart, DynamicSystem, Guard, Options,
-    ///     run_dynamic,
+    /// use stickslip_solver::{Dop853, Guard, Options};
+    /// use stickslip_solver::dynamic::{
+    ///     DynamicDense, DynamicObserver, DynamicStart, DynamicSystem, run_dynamic,
     /// };
     ///
     /// struct Decay;
@@ -54,8 +54,8 @@ impl<'a> DynamicDense<'a> {
     /// let mut kept = Kept::default();
     /// let end = run_dynamic(Dop853, &Decay, start, 1.0, &Options::default(), &mut kept)?;
     /// let (s, h, coefficients) = kept.0.last().expect("it has steps");
-    /// let last = DynamicDense::from_coefficients(*s, *h, 2, coefficients).expect("two components");
-    /// assert!((last.at(1.0)[1] - end.state[1]).abs() < 1e-15);
+    /// let last = DynamicDense::from_coefficients(*s, *h, 2, coefficients).expect("two
+    /// components"); assert!((last.at(1.0)[1] - end.state[1]).abs() < 1e-15);
     /// let half = s + 0.5 * h;
     /// assert!((last.at(0.5)[1] - 2.0 * (-half).exp()).abs() < 1e-9);
     /// # Ok::<(), stickslip_solver::RunError>(())
@@ -70,7 +70,7 @@ impl<'a> DynamicDense<'a> {
     /// components.
     ///
     /// ```
-    /// use stickslip_solver::DynamicDense;
+    /// use stickslip_solver::dynamic::DynamicDense;
     ///
     /// // 1 + 4θ and 2 + 5θ.
     /// let line = DynamicDense::from_coefficients(0.0, 0.5, 2, &[1.0, 2.0, 4.0, 5.0]);

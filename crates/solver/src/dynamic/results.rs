@@ -4,8 +4,8 @@ use crate::dynamic::dense::DynamicDense;
 use crate::error::RunError;
 use crate::hybrid::{Grazing, Outcome, Pole, Preempted, Rest, Statistics};
 
-/// A guard of a [`DynamicSystem`](crate::DynamicSystem) fired. The slices live as long as the call
-/// of the observer; [`Self::to_switch`] keeps them.
+/// A guard of a [`DynamicSystem`](crate::dynamic::DynamicSystem) fired. The slices live as long as
+/// the call of the observer; [`Self::to_switch`] keeps them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicEvent<'a, Mode> {
     /// The place of the switch.
@@ -72,7 +72,7 @@ pub struct DynamicSwitch<Mode> {
     pub after: Vec<f64>,
 }
 
-/// Receives what a run of a [`DynamicSystem`](crate::DynamicSystem) finds, in order, as
+/// Receives what a run of a [`DynamicSystem`](crate::dynamic::DynamicSystem) finds, in order, as
 /// [`Observer`](crate::Observer) does of other runs.
 pub trait DynamicObserver<Mode> {
     /// Whether the run calls [`Self::on_segment`]. Dense output costs further stages.
@@ -125,7 +125,7 @@ impl<Mode: Copy> DynamicObserver<Mode> for Vec<DynamicSwitch<Mode>> {
     }
 }
 
-/// How a run of a [`DynamicSystem`](crate::DynamicSystem) ended.
+/// How a run of a [`DynamicSystem`](crate::dynamic::DynamicSystem) ended.
 #[must_use = "a run may end early, which its outcome tells; `finished` turns that into an error"]
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicRun<Mode> {
@@ -139,7 +139,7 @@ pub struct DynamicRun<Mode> {
     pub state: Vec<f64>,
     /// Whether every guard was decided by bounds. It is false if guards of a black box were active:
     /// they are sampled, so that one that changes faster than the solution may have fired unseen. A
-    /// [`ReadableDynamic`](crate::ReadableDynamic) has decided guards.
+    /// [`ReadableDynamic`](crate::dynamic::ReadableDynamic) has decided guards.
     pub decided: bool,
     /// The work done by the run.
     pub statistics: Statistics,
@@ -149,8 +149,8 @@ impl<Mode> DynamicRun<Mode> {
     /// The run, if it came to a regular end: the end of its span or a terminal guard.
     ///
     /// # Errors
-    /// [`RunError::Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
-    /// because the observer stopped it.
+    /// [`RunError::Unfinished`] if the run ended early: at a limit, at an accumulation of switches,
+    /// or because the observer stopped it.
     pub fn finished(self) -> Result<Self, RunError> {
         RunError::unless_regular(self.outcome, self.s).map(|()| self)
     }

@@ -112,7 +112,7 @@ pub enum Place {
 /// The name of a margin: the value of `guard` at `place`, in the phase that follows `exits`.
 ///
 /// Hints say which of several extrema is meant. When the parameters move,
-/// [`margin`](crate::margin()) returns the name with hints that have moved along.
+/// [`margin`](crate::margin::margin()) returns the name with hints that have moved along.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margin {

@@ -47,7 +47,7 @@ pub struct Order {
 ///    difference. The range whose slope has the smallest standard error is taken.
 ///
 /// ```
-/// use stickslip_solver::fit_order;
+/// use stickslip_solver::method::fit_order;
 ///
 /// // An error of fourth order with a term of seventh order, and rounding.
 /// let steps = (0..60).map(|i| 0.5_f64.powf(f64::from(i) / 4.0));

@@ -23,9 +23,8 @@ use crate::runs::finite::{check_finite, is_finite};
 /// at a late switch does not suit the start of a phase.
 ///
 /// ```
-/// use stickslip_solver::{
-///     Direction, Dop853, Guard, HybridSystem, Outcome, Start, State, run_over_switches,
-/// };
+/// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Outcome, Start, State};
+/// use stickslip_solver::runs::run_over_switches;
 ///
 /// /// A ball thrown up.
 /// struct Throw;

@@ -119,7 +119,8 @@ pub trait SwitchedDynamic {
 ///
 /// ```
 /// use stickslip_solver::sliding::{SampledFilippov, TwoFields};
-/// use stickslip_solver::{Dop853, DynamicStart, Options, run_dynamic};
+/// use stickslip_solver::{Dop853, Options};
+/// use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
 ///
 /// // Relay feedback: x′ = −1 for x > 0 and 1 for x < 0. It is at rest at 0 from then on.
 /// let relay = SampledFilippov::new(TwoFields(

@@ -1,8 +1,9 @@
 //! What holds of every run of a hybrid system. Tests and fuzz targets share these checks.
 
+use stickslip_solver::margin::margins;
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
-    Start, State, StepSize, SwitchEvent, margins, run,
+    Start, State, StepSize, SwitchEvent, run,
 };
 
 /// Runs polynomials as guards by both methods, and checks that their signs change exactly where the

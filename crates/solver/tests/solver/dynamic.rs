@@ -18,10 +18,10 @@ mod large;
 mod planted;
 mod same;
 
-use stickslip_solver::{
-    DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch, DynamicSystem, Guard, HybridSystem,
-    Method, Options, RunError, State,
+use stickslip_solver::dynamic::{
+    DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch, DynamicSystem,
 };
+use stickslip_solver::{Guard, HybridSystem, Method, Options, RunError, State};
 
 use crate::erased::run_dynamic;
 

@@ -10,9 +10,10 @@ mod dynamic;
 mod modes;
 mod system;
 
+use stickslip_solver::margin::{Margin, Margins, NearMiss};
 use stickslip_solver::{
-    Dop853, EmbeddedPair, HybridSystem, Margin, Margins, Method, NearMiss, Observer, Options,
-    Recorder, Run, RunError, Start, State,
+    Dop853, EmbeddedPair, HybridSystem, Method, Observer, Options, Recorder, Run, RunError, Start,
+    State,
 };
 
 pub use dynamic::{run_dynamic, run_dynamic_backwards};
@@ -126,7 +127,7 @@ pub fn integrate<M: Method, O: Observer<(), N>, const N: usize>(
     stickslip_solver::integrate(method, field, s, y, end, options, observer)
 }
 
-/// As [`stickslip_solver::margins`].
+/// As [`stickslip_solver::margin::margins`].
 pub fn margins<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
     method: M,
     system: &S,
@@ -136,10 +137,10 @@ pub fn margins<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>
 ) -> Result<Margins, RunError> {
     let modes = &Modes::default();
     let (system, start) = (&Numbered { system, modes }, modes.start(start));
-    with_system!(system => stickslip_solver::margins(method, system, start, end, options))
+    with_system!(system => stickslip_solver::margin::margins(method, system, start, end, options))
 }
 
-/// As [`stickslip_solver::margin`].
+/// As [`stickslip_solver::margin::margin`].
 pub fn margin<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
     method: M,
     system: &S,
@@ -150,7 +151,7 @@ pub fn margin<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
 ) -> Result<Option<NearMiss>, RunError> {
     let modes = &Modes::default();
     let (system, start) = (&Numbered { system, modes }, modes.start(start));
-    with_system!(system => stickslip_solver::margin(method, system, start, end, options, margin))
+    with_system!(system => stickslip_solver::margin::margin(method, system, start, end, options, margin))
 }
 
 /// What these functions return and report is what those of the solver do with the types themselves.

@@ -4,9 +4,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use fastrand::Rng;
+use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicStart, run_dynamic_with};
 use stickslip_solver::{
-    Closures, Direction, DynamicEvent, DynamicObserver, DynamicStart, EmbeddedPair, Guard,
-    Observer, Options, Outcome, Pole, RunError, State, SwitchEvent, run_dynamic_with,
+    Closures, Direction, EmbeddedPair, Guard, Observer, Options, Outcome, Pole, RunError, State,
+    SwitchEvent,
 };
 
 use super::dynamic::Plain;

@@ -1,6 +1,6 @@
 //! Orders of convergence, fitted to errors that are known.
 
-use stickslip_solver::fit_order;
+use stickslip_solver::method::fit_order;
 
 /// Steps that fall from 1 by factors of 2^{1/4}, with their errors, which scatter by 1 %.
 fn errors(count: u32, error: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {

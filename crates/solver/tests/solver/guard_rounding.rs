@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
+use stickslip_solver::margin::{Margins, Place};
 use stickslip_solver::{
-    Direction, Dop853, Dopri5, Guard, HybridSystem, Margins, Method, Options, Outcome, Place,
-    Recorder, RunError, Start, State,
+    Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Options, Outcome, Recorder, RunError,
+    Start, State,
 };
 
 use crate::black_box::BlackBox;

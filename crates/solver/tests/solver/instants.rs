@@ -22,9 +22,10 @@ pub mod oracle;
 #[path = "instants/planted.rs"]
 mod planted;
 
+use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicStart, run_dynamic};
 use stickslip_solver::{
-    Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicStart, Method, Observer, Options,
-    Outcome, Preempted, RunError, Start, State, SwitchEvent, run, run_dynamic,
+    Dop853, Dopri5, Method, Observer, Options, Outcome, Preempted, RunError, Start, State,
+    SwitchEvent, run,
 };
 
 use oracle::{Act, Plan};

@@ -1,9 +1,11 @@
 //! Margins with a closed form.
 
+use stickslip_solver::dynamic::{DynamicStart, DynamicSystem, ReadableDynamic};
+use stickslip_solver::margin::{
+    Exit, Margins, Place, follow, follow_dynamic, margin_dynamic, margins_dynamic,
+};
 use stickslip_solver::{
-    Direction, Dop853, DynamicStart, DynamicSystem, Exit, Guard, HybridSystem, Margins, Number,
-    Options, Outcome, Place, ReadableDynamic, ReadableSystem, Start, State, follow, follow_dynamic,
-    margin_dynamic, margins_dynamic,
+    Direction, Dop853, Guard, HybridSystem, Number, Options, Outcome, ReadableSystem, Start, State,
 };
 
 use crate::black_box::BlackBox;

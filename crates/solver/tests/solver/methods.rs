@@ -7,10 +7,9 @@
 
 use std::cell::Cell;
 
+use stickslip_solver::method::{Dense, Step, Trial};
 use stickslip_solver::method::{INTERIOR_NODES, MAX_STAGES};
-use stickslip_solver::{
-    Dense, Dop853, Dopri5, Method, Observer, Options, State, Step, StepSize, Trial,
-};
+use stickslip_solver::{Dop853, Dopri5, Method, Observer, Options, State, StepSize};
 
 use crate::erased::integrate;
 

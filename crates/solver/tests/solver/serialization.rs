@@ -1,7 +1,8 @@
 //! The JSON of results: names and order of fields, and values.
 
 use serde_json::{Value, json, to_value};
-use stickslip_solver::{Grazing, Outcome, Statistics, fit_order};
+use stickslip_solver::method::fit_order;
+use stickslip_solver::{Grazing, Outcome, Statistics};
 
 /// The names of the fields of an object, in order.
 fn names(value: &Value) -> Vec<&str> {

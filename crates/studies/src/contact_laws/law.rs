@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
-use stickslip_model::{Collision, CollisionFailure, Contact, Engine, History, SpringEnergy};
+use stickslip_model::history::History;
+use stickslip_model::{Collision, CollisionFailure, Contact, Engine, SpringEnergy};
 use stickslip_plane::GridAxis;
 
 use super::settings::{Named, Settings};

@@ -1,6 +1,7 @@
 //! What the measurements say, in sentences with their numbers.
 
-use stickslip_solver::{EmbeddedPair, Order};
+use stickslip_solver::EmbeddedPair;
+use stickslip_solver::method::Order;
 
 use super::Measurement;
 use super::collisions::engine;

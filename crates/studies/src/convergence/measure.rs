@@ -9,9 +9,10 @@ use serde::Serialize;
 use stickslip_model::exact;
 use stickslip_model::regularized::{self, Phase, Regularized};
 use stickslip_model::{Collider, Collision, CollisionError, Contact, Regime, Side};
+use stickslip_solver::runs::run_over_switches;
 use stickslip_solver::{
     Dop853, Dopri5, EmbeddedPair, HybridSystem, Observer, Options, Outcome, Run, RunError, Start,
-    Statistics, SwitchEvent, run_over_switches, run_with,
+    Statistics, SwitchEvent, run_with,
 };
 
 use super::plain_time::{self, PlainTime};

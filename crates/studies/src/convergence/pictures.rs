@@ -3,7 +3,8 @@
 use stickslip_figure::Svg;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
-use stickslip_solver::{EmbeddedPair, Order};
+use stickslip_solver::EmbeddedPair;
+use stickslip_solver::method::Order;
 
 use super::Measurement;
 use super::measure::{Coordinates, Errors, Spread};

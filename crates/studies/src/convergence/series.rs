@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use stickslip_model::Collision;
-use stickslip_solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
+use stickslip_solver::method::{Order, fit_order};
+use stickslip_solver::{EmbeddedPair, Options, StepSize};
 
 use super::measure::{Coordinates, Errors, Spread, Switching, measure};
 

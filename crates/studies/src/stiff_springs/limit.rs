@@ -2,15 +2,16 @@
 //!
 //! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end
 //! of contact. The height of these oscillations is the [`envelope`]. It tends to κ^{−5/4} times
-//! [`inner::peak`](stickslip_model::inner::peak), and is the same for all of them. All maxima are
-//! found by Brent's method from a bracket, on collisions of the exact engine. Along κ at fixed ψ
-//! the oscillation would change its height while it passes, and its maxima would lie beside the
-//! envelope.
+//! [`inner::peak`](stickslip_model::limits::inner::peak), and is the same for all of them. All
+//! maxima are found by Brent's method from a bracket, on collisions of the exact engine. Along κ at
+//! fixed ψ the oscillation would change its height while it passes, and its maxima would lie beside
+//! the envelope.
 
 use std::f64::consts::PI;
 
 use stickslip_model::exact;
-use stickslip_model::{Collision, Contact, InvalidValue, largest};
+use stickslip_model::limits::largest;
+use stickslip_model::{Collision, Contact, InvalidValue};
 
 use crate::error::StudyError;
 use crate::search::{highest, root};
@@ -49,7 +50,7 @@ pub struct Crest {
 /// Cost: about 25 collisions.
 ///
 /// ```
-/// use stickslip_model::inner;
+/// use stickslip_model::limits::inner;
 /// use stickslip_studies::stiff_springs::limit;
 ///
 /// let [high, low] = [0.5, 1.5].map(|psi| limit::envelope(1e6, psi).unwrap().velocity);

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use stickslip_model::{exact, inner};
+use stickslip_model::exact;
+use stickslip_model::limits::inner;
 
 use super::limit::{self, contact};
 use super::settings::Settings;

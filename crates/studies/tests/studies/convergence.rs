@@ -6,7 +6,8 @@
 
 use stickslip_model::{Collision, Contact};
 use stickslip_plane::progress::SILENT;
-use stickslip_solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
+use stickslip_solver::method::{Order, fit_order};
+use stickslip_solver::{EmbeddedPair, Options, StepSize};
 use stickslip_studies::convergence::{self, Coordinates, Settings, Switching, measure, reference};
 
 /// Collisions with two to eight switches, three to seven with damping.

@@ -3,7 +3,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use stickslip_model::exact::{self, ExactError};
-use stickslip_model::{Collision, Contact, inner};
+use stickslip_model::limits::inner;
+use stickslip_model::{Collision, Contact};
 use stickslip_studies::StudyError;
 use stickslip_studies::stiff_springs::limit::{
     BOUND_FACTOR, envelope, excess, largest_restitution,

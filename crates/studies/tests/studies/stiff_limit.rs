@@ -1,7 +1,8 @@
 //! The limit of stiff springs: full collisions against the inner problem and against 40-digit
 //! references.
 
-use stickslip_model::{Contact, exact, inner};
+use stickslip_model::limits::inner;
+use stickslip_model::{Contact, exact};
 use stickslip_studies::stiff_springs::limit;
 
 /// F, computed with 50 digits in mpmath as the largest final velocity of the map of onsets, its

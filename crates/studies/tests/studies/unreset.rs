@@ -57,7 +57,7 @@ fn obeys_the_law_in_plain_time() {
 fn the_spring_is_at_the_limit_where_it_switches_and_beyond_it_in_slip() {
     let UnresetCollision { collision, largest_spring } = collision(18.0, 0.3, 0.0);
     assert!(collision.switches.len() >= 2, "{}", collision.itinerary());
-    let limit = stickslip_model::largest::FORCE / 18.0;
+    let limit = stickslip_model::limits::largest::FORCE / 18.0;
     assert!(collision.switches.iter().all(|switch| switch.spring.abs() <= limit));
     assert!(largest_spring < 0.3 * collision.contact_time);
     assert!(self::collision(18.0, 1.5, 0.0).largest_spring > 10.0 * limit);

@@ -1,6 +1,6 @@
 //! The kinds of the vertices of a hybrid system.
 
-use stickslip_solver::{Margin, Place};
+use stickslip_solver::margin::{Margin, Place};
 
 use crate::curve::VertexKind;
 use crate::tracing::network::Network;

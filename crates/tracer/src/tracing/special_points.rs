@@ -1,6 +1,6 @@
 //! The names of points at which two conditions hold together.
 
-use stickslip_solver::{Margin, Place};
+use stickslip_solver::margin::{Margin, Place};
 
 use crate::curve::{Curve, Vertex};
 use crate::regions::subdivision::Subdivision;

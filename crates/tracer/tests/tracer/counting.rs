@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use stickslip_solver::Margin;
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
     AtlasError, AtlasOptions, Count, Family, FamilyError, FreeRun, Itinerary, Point, Serial,
     Surveyor, TraceError, TraceOptions, Tracer, Watch, Window,

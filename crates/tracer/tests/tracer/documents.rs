@@ -2,7 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Margin, Options, Start, State};
+use stickslip_solver::margin::Margin;
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
     AtlasOf, Document, DocumentError, HybridFamily, Itinerary, Point, SCHEMA, Surveyor, Watch,
     Window,

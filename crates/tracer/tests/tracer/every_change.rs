@@ -1,7 +1,8 @@
 //! One family for each way in which a sequence of switches can change. Every change happens where
 //! h = y − x² vanishes.
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Place, Start, State};
+use stickslip_solver::margin::Place;
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{HybridFamily, Itinerary, Point, TraceOptions, Window, trace};
 
 use crate::any::{any, any_system};

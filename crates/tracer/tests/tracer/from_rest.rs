@@ -1,6 +1,7 @@
 //! A family of runs that start at rest, with a dimension that is known at run time.
 
-use stickslip_solver::{Direction, Dop853, DynamicSystem, Guard, Options};
+use stickslip_solver::dynamic::DynamicSystem;
+use stickslip_solver::{Direction, Dop853, Guard, Options};
 use stickslip_tracer::{
     Atlas, AtlasOptions, DynamicFamily, DynamicProblem, DynamicSetting, Itinerary, Point,
     TraceOptions, VerifyOptions, Window,

@@ -3,7 +3,8 @@
 
 use std::fmt::Debug;
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Margin, Options, Start, State};
+use stickslip_solver::margin::Margin;
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
     Family, HybridFamily, Itinerary, Point, SpecialPoint, Surveyor, TraceOptions, VertexKind,
     Window, trace,

@@ -1,7 +1,8 @@
 //! Vertices of known kinds. Each guard is a cubic in u, for u from −1/2 to 1/2. It fires when it
 //! falls through zero and, after it has fired, when it rises again.
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Margin, Options, Start, State};
+use stickslip_solver::margin::Margin;
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
     HybridFamily, Itinerary, Network, Point, Problem, SpecialPoint, TraceOptions, VertexKind,
     Window, trace,

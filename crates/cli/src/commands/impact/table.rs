@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use stickslip_model::{Engine, ForceSwitch, ImpactReport, Vector3};
+use stickslip_model::Engine;
+use stickslip_model::spheres::{ForceSwitch, ImpactReport, Vector3};
 use stickslip_solver::Statistics;
 
 use crate::output::text::{aligned, describe, law, number, pairs, work};

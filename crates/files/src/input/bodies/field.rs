@@ -7,8 +7,8 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
-use stickslip_model::Vector3;
-use stickslip_model::quantity::Quantity;
+use stickslip_model::spheres::Vector3;
+use stickslip_model::spheres::quantity::Quantity;
 
 /// A struct that is written as an object. serde alone would also accept an array of its fields.
 #[derive(Clone, Default)]

@@ -4,10 +4,11 @@ mod numbers;
 
 use serde::Deserialize;
 use serde_json::Value;
-use stickslip_model::quantity;
-use stickslip_model::quantity::Quantity;
-use stickslip_model::{
-    Constants, Elasticity, Forces, Law, Motion, Sphere, Surface, Wall, WallMotion,
+use stickslip_model::Law;
+use stickslip_model::spheres::quantity;
+use stickslip_model::spheres::quantity::Quantity;
+use stickslip_model::spheres::{
+    Constants, Elasticity, Forces, Motion, Sphere, Surface, Wall, WallMotion,
 };
 
 use super::field::{Object, number, required, vector};

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use csv::ByteRecord;
-use stickslip_model::quantity::Quantity;
-use stickslip_model::{Encounter, Law};
+use stickslip_model::Law;
+use stickslip_model::spheres::Encounter;
+use stickslip_model::spheres::quantity::Quantity;
 
 use super::file::{File, Slot};
 use super::velocities::{QUANTITIES, Velocities, VelocitiesError};

@@ -1,6 +1,6 @@
 //! Velocities of the surfaces at the contact, which may stand for the motions of the bodies.
 
-use stickslip_model::quantity::{self, Quantity};
+use stickslip_model::spheres::quantity::{self, Quantity};
 
 /// The velocities of the surfaces, in either of two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]

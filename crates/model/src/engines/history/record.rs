@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use stickslip_contact::{Regime, Side};
-use stickslip_solver::{Dense, Observer, State, SwitchEvent};
+use stickslip_solver::method::Dense;
+use stickslip_solver::{Observer, State, SwitchEvent};
 
 use super::Snapshot;
 use super::followed::{Begins, Followed};

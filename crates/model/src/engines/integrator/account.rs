@@ -4,7 +4,8 @@ use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{STATE, T};
 use stickslip_contact::{Collision, Regime, Switch};
-use stickslip_solver::{Dense, Observer, State, SwitchEvent};
+use stickslip_solver::method::Dense;
+use stickslip_solver::{Observer, State, SwitchEvent};
 
 use super::last_slip::{self, LastStick};
 use super::reversals;

@@ -1,9 +1,9 @@
 //! The defined answers, limits, errors and runs backwards.
 
-use stickslip_solver::{
-    Direction, Dop853, Dopri5, DynamicDense, DynamicEvent, DynamicObserver, DynamicStart,
-    DynamicSwitch, DynamicSystem, Guard, Options, Outcome, RunError, StepSize,
+use stickslip_solver::dynamic::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicStart, DynamicSwitch, DynamicSystem,
 };
+use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Options, Outcome, RunError, StepSize};
 
 use super::{Boxed, Plain, go, places};
 use crate::erased::{run_dynamic, run_dynamic_backwards};

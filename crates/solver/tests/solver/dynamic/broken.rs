@@ -1,8 +1,8 @@
 //! Inputs that nobody designed for.
 
+use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicSwitch, DynamicSystem};
 use stickslip_solver::{
-    Direction, Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicSwitch, DynamicSystem,
-    Grazing, Guard, Method, Options, Outcome, StepSize,
+    Direction, Dop853, Dopri5, Grazing, Guard, Method, Options, Outcome, StepSize,
 };
 
 use super::{Plain, go, places};
@@ -192,12 +192,19 @@ fn late_times_and_short_spans() {
         values: |_s, y: &[f64], v: &mut [f64]| v[0] = y[0],
     }
     .boxed();
-    let start = |s: f64| stickslip_solver::DynamicStart { mode: (), s, state: &[0.5, 1.0] };
+    let start =
+        |s: f64| stickslip_solver::dynamic::DynamicStart { mode: (), s, state: &[0.5, 1.0] };
     for s in [1e6, 1e12, -1e12] {
         let mut found = Switches::new();
         let options = Options::default();
-        let run =
-            stickslip_solver::run_dynamic(Dop853, &system, start(s), s + 9.0, &options, &mut found);
+        let run = stickslip_solver::dynamic::run_dynamic(
+            Dop853,
+            &system,
+            start(s),
+            s + 9.0,
+            &options,
+            &mut found,
+        );
         assert_eq!(run.expect("late").outcome, Outcome::ReachedEnd);
         let first = std::f64::consts::PI - 0.5_f64.atan();
         assert_eq!(found.len(), 3);

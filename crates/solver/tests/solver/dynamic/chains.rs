@@ -2,8 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use stickslip_solver::dynamic::DynamicStart;
 use stickslip_solver::{
-    Direction, Dop853, DynamicStart, Guard, HybridSystem, Options, Start, State, SwitchEvent,
+    Direction, Dop853, Guard, HybridSystem, Options, Start, State, SwitchEvent,
 };
 
 use super::{Of, places};

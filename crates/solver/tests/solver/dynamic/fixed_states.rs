@@ -1,10 +1,11 @@
 //! What small systems find on states of fixed dimension they find on buffers.
 
-use stickslip_solver::{
-    Direction, Dop853, Dopri5, DynamicDense, DynamicEvent, DynamicObserver, DynamicStart,
-    DynamicSwitch, DynamicSystem, Guard, Margin, Margins, Method, Number, Options, ReadableDynamic,
-    RunError, follow_dynamic, margin_dynamic, margins_dynamic, run_dynamic,
+use stickslip_solver::dynamic::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicStart, DynamicSwitch, DynamicSystem,
+    ReadableDynamic, run_dynamic,
 };
+use stickslip_solver::margin::{Margin, Margins, follow_dynamic, margin_dynamic, margins_dynamic};
+use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Number, Options, RunError};
 
 /// Levels that rise and fall. The even ones are pushed up when they are low; after a push only the
 /// first one is watched, until it has risen.
@@ -144,7 +145,7 @@ fn a_system_that_is_filled_up_takes_the_same_steps() {
         let options = Options::default();
         let fixed = run_dynamic(Dop853, &Levels::<true>::new(n), start(), 3.0, &options, &mut ());
         let free = run_dynamic(Dop853, &Levels::<false>::new(n), start(), 3.0, &options, &mut ());
-        let steps = |run: Result<stickslip_solver::DynamicRun<bool>, _>| {
+        let steps = |run: Result<stickslip_solver::dynamic::DynamicRun<bool>, _>| {
             let statistics = run.expect("a run").statistics;
             (statistics.accepted, statistics.rejected)
         };

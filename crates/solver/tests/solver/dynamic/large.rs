@@ -1,9 +1,8 @@
 //! Many components.
 
 use allocation_counter::measure;
-use stickslip_solver::{
-    Direction, Dop853, Dopri5, DynamicRun, DynamicSwitch, Guard, Method, Options, StepSize,
-};
+use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
+use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Options, StepSize};
 
 use super::{Plain, go};
 

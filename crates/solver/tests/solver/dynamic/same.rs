@@ -1,9 +1,9 @@
 //! Runs of any dimension and of fixed dimension find the same.
 
+use stickslip_solver::dynamic::{DynamicStart, DynamicSwitch};
 use stickslip_solver::{
-    Closures, Direction, Dop853, Dopri5, DynamicStart, DynamicSwitch, EmbeddedPair, Guard,
-    HybridSystem, Method, Options, Outcome, Run, RunError, Start, State, Statistics, StepSize,
-    SwitchEvent,
+    Closures, Direction, Dop853, Dopri5, EmbeddedPair, Guard, HybridSystem, Method, Options,
+    Outcome, Run, RunError, Start, State, Statistics, StepSize, SwitchEvent,
 };
 
 use super::{Of, Plain, go};

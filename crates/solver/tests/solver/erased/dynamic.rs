@@ -1,9 +1,9 @@
 //! Systems and observers of any dimension.
 
-use stickslip_solver::{
-    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem, Grazing,
-    Guard, Method, Options, Pole, RunError, Schedule,
+use stickslip_solver::dynamic::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem,
 };
+use stickslip_solver::{Grazing, Guard, Method, Options, Pole, RunError, Schedule};
 
 use super::modes::Modes;
 
@@ -27,7 +27,7 @@ macro_rules! with_numbers {
     }};
 }
 
-/// As [`stickslip_solver::run_dynamic`].
+/// As [`stickslip_solver::dynamic::run_dynamic`].
 pub fn run_dynamic<M: Method, S: DynamicSystem, O: DynamicObserver<S::Mode>>(
     method: M,
     system: &S,
@@ -36,10 +36,18 @@ pub fn run_dynamic<M: Method, S: DynamicSystem, O: DynamicObserver<S::Mode>>(
     options: &Options,
     observer: &mut O,
 ) -> Result<DynamicRun<S::Mode>, RunError> {
-    with_numbers!(stickslip_solver::run_dynamic, method, system, start, end, options, observer)
+    with_numbers!(
+        stickslip_solver::dynamic::run_dynamic,
+        method,
+        system,
+        start,
+        end,
+        options,
+        observer
+    )
 }
 
-/// As [`stickslip_solver::run_dynamic_backwards`].
+/// As [`stickslip_solver::dynamic::run_dynamic_backwards`].
 pub fn run_dynamic_backwards<M: Method, S: DynamicSystem, O: DynamicObserver<S::Mode>>(
     method: M,
     system: &S,
@@ -49,7 +57,7 @@ pub fn run_dynamic_backwards<M: Method, S: DynamicSystem, O: DynamicObserver<S::
     observer: &mut O,
 ) -> Result<DynamicRun<S::Mode>, RunError> {
     with_numbers!(
-        stickslip_solver::run_dynamic_backwards,
+        stickslip_solver::dynamic::run_dynamic_backwards,
         method,
         system,
         start,

@@ -1,7 +1,8 @@
 //! Systems and observers of fixed dimension.
 
+use stickslip_solver::method::Dense;
 use stickslip_solver::{
-    Dense, Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, Run, Schedule, Start, State,
+    Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, Run, Schedule, Start, State,
     SwitchEvent,
 };
 

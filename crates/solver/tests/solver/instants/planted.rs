@@ -3,9 +3,9 @@
 //! Slopes are constant and rational, guards are monotone functions of linear forms, and numbers are
 //! multiples of [`UNIT`]⁻¹ with exact arithmetic. So it is known which events coincide.
 
+use stickslip_solver::dynamic::{DynamicSystem, ReadableDynamic};
 use stickslip_solver::{
-    Direction, DynamicSystem, Guard, HybridSystem, Number, ReadableDynamic, ReadableSystem,
-    Schedule, State, Times,
+    Direction, Guard, HybridSystem, Number, ReadableSystem, Schedule, State, Times,
 };
 
 /// A number in multiples of 1/[`UNIT`].

@@ -2,10 +2,12 @@
 
 use std::cell::OnceCell;
 
+use stickslip_solver::dynamic::{
+    DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, run_dynamic,
+};
 use stickslip_solver::{
-    Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, Enclosure, Guard,
-    HybridSystem, Method, Number, Observer, Options, Outcome, RunError, Schedule, Start, State,
-    SwitchEvent, run, run_dynamic,
+    Dop853, Dopri5, Enclosure, Guard, HybridSystem, Method, Number, Observer, Options, Outcome,
+    RunError, Schedule, Start, State, SwitchEvent, run,
 };
 
 /// A system of up to four components, three guards and some modes.

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
+use stickslip_solver::method::Dense;
 use stickslip_solver::{
-    Closures, Dense, Direction, Dop853, EmbeddedPair, Guard, Observer, Options, Outcome, RunError,
-    State,
+    Closures, Direction, Dop853, EmbeddedPair, Guard, Observer, Options, Outcome, RunError, State,
 };
 
 use super::{Log, at, ball, bounce, fixed, line, start_of_line, thrown};

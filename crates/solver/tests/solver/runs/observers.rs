@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use stickslip_solver::{Dense, Direction, Dop853, Guard, Observer, Options, Outcome, Recorder};
+use stickslip_solver::method::Dense;
+use stickslip_solver::{Direction, Dop853, Guard, Observer, Options, Outcome, Recorder};
 
 use super::{Log, fixed, line, reaches_end, start_of_line};
 use crate::erased::run;

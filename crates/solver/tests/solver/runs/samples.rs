@@ -1,8 +1,9 @@
 //! Output at given times.
 
+use stickslip_solver::runs::run_over_switches;
 use stickslip_solver::{
     Closures, Direction, Dop853, Dopri5, Guard, InvalidValue, Options, Outcome, Recorder, Samples,
-    State, run_over_switches,
+    State,
 };
 
 use super::{Log, at, ball, line, reaches_end, start_of_line};

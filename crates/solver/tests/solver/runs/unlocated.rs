@@ -1,8 +1,9 @@
 //! Runs in fixed steps that step over their switches.
 
+use stickslip_solver::runs::run_over_switches;
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Options, Outcome, Recorder, RunError, Start,
-    State, StepSize, run, run_over_switches,
+    State, StepSize, run,
 };
 
 /// y' = 1 with one guard, which is a function of s and changes nothing.

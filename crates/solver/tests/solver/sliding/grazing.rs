@@ -7,8 +7,10 @@
 
 use std::f64::consts::TAU;
 
+use stickslip_solver::margin::Place;
+use stickslip_solver::sensitivity::sensitivities;
 use stickslip_solver::sliding::{Filippov, Side};
-use stickslip_solver::{Dop853, Number, Options, Place, Start, State, sensitivities};
+use stickslip_solver::{Dop853, Number, Options, Start, State};
 
 use crate::erased::{margin, margins, run};
 use stickslip_solver::sliding::Switched;

@@ -1,9 +1,8 @@
 //! Clocks and rest of a system that slides.
 
+use stickslip_solver::dynamic::DynamicStart;
 use stickslip_solver::sliding::{Filippov, SampledFilippov, Side, Switched, SwitchedDynamic};
-use stickslip_solver::{
-    Direction, Dop853, DynamicStart, Guard, Number, Options, Schedule, Start, State, Times,
-};
+use stickslip_solver::{Direction, Dop853, Guard, Number, Options, Schedule, Start, State, Times};
 
 use crate::erased::{run, run_dynamic};
 

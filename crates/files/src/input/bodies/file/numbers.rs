@@ -1,7 +1,7 @@
 //! The numbers of the file, by name, so that columns may give them.
 
 use serde_json::{Value, json};
-use stickslip_model::quantity::{self, Quantity};
+use stickslip_model::spheres::quantity::{self, Quantity};
 
 use super::{
     File, MaterialFields, MotionFields, Object, POSITION, SPHERES, SphereFields, SurfaceFields,
