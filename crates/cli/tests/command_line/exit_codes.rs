@@ -9,6 +9,6 @@ use stickslip_reproduction::ReproductionError;
 #[test]
 fn an_error_inside_the_reproduction_is_not_bad_usage() {
     let invalid = Contact::new(-1.0, 1.0, 0.0).unwrap_err();
-    let inside = Failure::from(ReproductionError::from(invalid));
+    let inside = Failure::from(ReproductionError::from(invalid.clone()));
     assert_eq!((inside.code(), Failure::from(AtlasError::from(invalid)).code()), (1, 2));
 }

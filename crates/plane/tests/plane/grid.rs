@@ -98,7 +98,7 @@ fn the_largest_stiffness_is_that_of_no_other_cell() {
 #[test]
 fn a_cell_without_a_collision_has_no_value() {
     let grid = Grid { coordinates: Coordinates::Psi { damping: -1.0 }, ..grids()[0] };
-    assert_eq!(grid.contact(0, 0).unwrap_err().value, -1.0);
+    assert_eq!(grid.contact(0, 0).unwrap_err().value, (-1.0).into());
     let grid = Grid { columns: axis(-2.0, -1.0, 1), ..grids()[2] };
     assert!(grid.value(Quantity::Kappa, 0, 0).is_nan());
     assert_eq!(grid.value(Quantity::Normal, 0, 0), -1.5);
