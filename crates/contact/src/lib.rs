@@ -30,7 +30,7 @@ pub use contact::{Contact, OtherLaw};
 pub use law::{Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
 pub use phase::{Regime, Side};
 pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
-pub use stickslip_solver::InvalidValue;
+pub use stickslip_solver::{GivenValue, InvalidValue};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -41,6 +41,8 @@ pub enum GivenValue {
     Interval([f64; 2]),
     /// A text, shown in quotes.
     Text(String),
+    /// What is wrong, in words that go on behind the name.
+    Phrase(String),
 }
 
 impl InvalidValue {
@@ -71,14 +73,17 @@ impl InvalidValue {
 impl GivenValue {
     /// What stands between the name and the value.
     fn sign(&self) -> &'static str {
-        if matches!(self, Self::Interval(_)) { " " } else { " = " }
+        match self {
+            Self::Number(_) | Self::Count(_) | Self::Text(_) => " = ",
+            Self::Interval(_) | Self::Phrase(_) => " ",
+        }
     }
 
     /// What stands behind the value.
     fn verdict(&self) -> &'static str {
         match self {
             Self::Number(_) | Self::Count(_) | Self::Interval(_) => " is out of range",
-            Self::Text(_) => "",
+            Self::Text(_) | Self::Phrase(_) => "",
         }
     }
 }
@@ -90,6 +95,7 @@ impl fmt::Display for GivenValue {
             Self::Count(value) => write!(f, "{value}"),
             Self::Interval([low, high]) => write!(f, "{low:?}:{high:?}"),
             Self::Text(value) => write!(f, "{value:?}"),
+            Self::Phrase(phrase) => f.write_str(phrase),
         }
     }
 }

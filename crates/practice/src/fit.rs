@@ -215,6 +215,12 @@ pub enum FitError {
     /// A setting or a datum is out of range, or an impact has no scaled parameters.
     #[error(transparent)]
     Value(#[from] InvalidValue),
+    /// There are no data, or too many.
+    #[error("{count} data; expected 1 to {}", Settings::MOST_DATA)]
+    Count {
+        /// The number of data.
+        count: usize,
+    },
     /// Some data have errors, but not all.
     #[error("row {row}: {name} has no error, and others have one; expected all errors, or none")]
     NoError {

@@ -69,8 +69,7 @@ impl Settings {
     pub fn validate(&self) -> Result<(), FitError> {
         let count = self.data.len();
         if !(1..=Self::MOST_DATA).contains(&count) {
-            let expected = format!("1 to {}", Self::MOST_DATA);
-            return Err(InvalidValue::new("data", count, expected).into());
+            return Err(FitError::Count { count });
         }
         for datum in &self.data {
             valid(datum, self.bodies.are_scaled())?;

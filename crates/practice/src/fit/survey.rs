@@ -1,7 +1,6 @@
 //! The fit itself: the model on a grid, and what is made of it with data.
 
 use rayon::prelude::*;
-use stickslip_model::InvalidValue;
 use stickslip_plane::progress::{Progress, Report};
 
 use super::axis::Axis;
@@ -138,8 +137,7 @@ impl Survey {
     pub fn fit_of(&self, values: &[f64]) -> Result<Fit, FitError> {
         let mut settings = self.settings.clone();
         if values.len() != settings.data.len() || self.damping.is_some() {
-            let expected = format!("1 to {}", Settings::MOST_DATA);
-            return Err(InvalidValue::new("data", values.len(), expected).into());
+            return Err(FitError::Count { count: values.len() });
         }
         for (datum, value) in settings.data.iter_mut().zip(values) {
             datum.value = *value;

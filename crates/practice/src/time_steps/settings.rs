@@ -1,7 +1,7 @@
 //! The settings of a study of time steps.
 
 use stickslip_model::spheres::quantity;
-use stickslip_model::{Contact, InvalidValue, Reduction};
+use stickslip_model::{Contact, GivenValue, InvalidValue, Reduction};
 
 use super::scheme::Scheme;
 
@@ -52,9 +52,13 @@ impl Settings {
     /// [`InvalidValue`] names the first that is out of its range.
     pub fn validate(&self) -> Result<(), InvalidValue> {
         let (impacts, phases) = (self.contacts.len(), self.phases);
-        InvalidValue::check("contacts", impacts, "at least one", impacts > 0)?;
+        if impacts == 0 {
+            return Err(invalid("contacts:", "0 impacts".to_owned(), "at least one".to_owned()));
+        }
         let steps = &self.steps_per_contact;
-        InvalidValue::check("steps", steps.len(), "at least one", !steps.is_empty())?;
+        if steps.is_empty() {
+            return Err(invalid("steps:", "0 time steps".to_owned(), "at least one".to_owned()));
+        }
         let range = Self::FEWEST_STEPS..=Self::MOST_STEPS;
         if let Some(&value) = steps.iter().find(|steps| !range.contains(steps)) {
             let (low, high) = (range.start(), range.end());
@@ -67,8 +71,8 @@ impl Settings {
         }
         if impacts.saturating_mul(phases) > Self::MOST_CONTACTS {
             let most = Self::MOST_CONTACTS;
-            let expected = format!("a product with {impacts} impacts of at most {most}");
-            return Err(InvalidValue::new("phases", phases, expected));
+            let given = format!("= {phases} with {impacts} impacts make too many contacts");
+            return Err(invalid("phases", given, format!("a product of at most {most}")));
         }
         let Reduction { mu, alpha } = self.reduction;
         let accepted = quantity::FRICTION.check(mu).is_ok();
@@ -76,4 +80,9 @@ impl Settings {
         let accepted = quantity::INERTIA.check(alpha).is_ok();
         InvalidValue::check("alpha", alpha, "a number above 0, at most 1", accepted)
     }
+}
+
+/// The error of `name`, with the words that say what is wrong.
+fn invalid(name: &'static str, phrase: String, expected: String) -> InvalidValue {
+    InvalidValue::new(name, GivenValue::Phrase(phrase), expected)
 }

@@ -220,13 +220,10 @@ fn settings_out_of_range_are_refused() {
         assert!(matches!(error, TimeStepsError::Settings(_)));
         error.to_string()
     };
-    assert_eq!(
-        message(|it| it.contacts.clear()),
-        "contacts = 0 is out of range; expected at least one"
-    );
+    assert_eq!(message(|it| it.contacts.clear()), "contacts: 0 impacts; expected at least one");
     assert_eq!(
         message(|it| it.steps_per_contact.clear()),
-        "steps = 0 is out of range; expected at least one"
+        "steps: 0 time steps; expected at least one"
     );
     let expected = "expected a number of steps in a contact from 1.0 to 10000000.0";
     let steps = message(|it| it.steps_per_contact.push(0.5));

@@ -1,6 +1,6 @@
 //! What a study of convergence is about.
 
-use stickslip_model::{Contact, InvalidValue};
+use stickslip_model::{Contact, GivenValue, InvalidValue};
 
 use crate::error::StudyError;
 use crate::limits::MOST_STIFFNESS;
@@ -32,8 +32,10 @@ impl Settings {
     /// # Errors
     /// [`StudyError::Settings`]: there is no collision, or one is too stiff; [`StudyError::Law`].
     pub fn validate(&self) -> Result<(), StudyError> {
-        let count = self.contacts.len();
-        InvalidValue::check("collisions", count, "at least one", count > 0)?;
+        if self.contacts.is_empty() {
+            let none = GivenValue::Phrase("0 collisions".to_owned());
+            return Err(InvalidValue::new("a study of", none, "at least one").into());
+        }
         for contact in &self.contacts {
             contact.require_paper("the convergence")?;
         }

@@ -1,6 +1,6 @@
 //! What a study of stiff springs is about.
 
-use stickslip_model::InvalidValue;
+use stickslip_model::{GivenValue, InvalidValue};
 use stickslip_plane::Range;
 
 use crate::limits::{MOST_PSI, STIFFNESSES};
@@ -35,14 +35,19 @@ impl Settings {
         }
         let count = self.psi.len();
         if !(1..=MOST_PSI).contains(&count) {
-            let expected = format!("1 to {MOST_PSI}");
-            return Err(InvalidValue::new("psi: the number of values", count, expected));
+            let given = GivenValue::Phrase(format!("has {count} values"));
+            return Err(InvalidValue::new("psi", given, format!("1 to {MOST_PSI}")));
         }
         for (index, &psi) in self.psi.iter().enumerate() {
-            let expected = "numbers above 0 and below 2, from where on there is no switch";
-            InvalidValue::check("psi", psi, expected, psi > 0.0 && psi < 2.0)?;
-            let once = !self.psi[..index].contains(&psi);
-            InvalidValue::check("psi", psi, "each value once", once)?;
+            let (phrase, expected) = if !(psi > 0.0 && psi < 2.0) {
+                let expected = "numbers above 0 and below 2, from where on there is no switch";
+                (format!("{psi:?} is out of range"), expected)
+            } else if self.psi[..index].contains(&psi) {
+                (format!("has {psi:?} twice"), "each value once")
+            } else {
+                continue;
+            };
+            return Err(InvalidValue::new("psi", GivenValue::Phrase(phrase), expected));
         }
         Ok(())
     }

@@ -118,7 +118,7 @@ fn steps_over_switches_leave_order_two_of_the_velocity_and_one_of_the_times() {
 #[test]
 fn a_study_of_nothing_is_refused() {
     let error = convergence::run(&Settings { contacts: Vec::new() }, SILENT).unwrap_err();
-    assert_eq!(error.to_string(), "collisions = 0 is out of range; expected at least one");
+    assert_eq!(error.to_string(), "a study of 0 collisions; expected at least one");
     let stiff = Contact::new(2e6, 1.0, 0.0).unwrap();
     let error = convergence::run(&Settings { contacts: vec![stiff] }, SILENT).unwrap_err();
     assert!(error.to_string().contains("at most 1000000.0"), "{error}");
