@@ -12,7 +12,7 @@ use std::fmt;
 ///
 /// let error = InvalidValue::new("rtol", -1.0, "1e-15 to 0.1");
 /// assert_eq!(error.to_string(), "rtol = -1.0 is out of range; expected 1e-15 to 0.1");
-/// let error = InvalidValue::new("cells", 0, "1 to 4096");
+/// let error = InvalidValue::new("cells", 0_usize, "1 to 4096");
 /// assert_eq!(error.to_string(), "cells = 0 is out of range; expected 1 to 4096");
 /// let error = InvalidValue::new("psi", [2.0, 1.0], "LO:HI with LO < HI");
 /// assert_eq!(error.to_string(), "psi 2.0:1.0 is out of range; expected LO:HI with LO < HI");
