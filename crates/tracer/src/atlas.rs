@@ -10,7 +10,7 @@ use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::report::{Mismatch, Verification, VerifyError};
 use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
-use crate::tracing::state::State;
+use crate::tracing::tracer::state::State;
 use crate::window::{Point, Window};
 
 /// The options of an [`Atlas`].

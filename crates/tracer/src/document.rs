@@ -10,8 +10,8 @@ use crate::regions::region::Region;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::report::Verification;
 use crate::tracing::network::{TraceStatistics, Unresolved};
-use crate::tracing::stage::Stage;
-use crate::tracing::state::State;
+use crate::tracing::tracer::stage::Stage;
+use crate::tracing::tracer::state::State;
 use crate::window::Window;
 
 /// The name of the layout, with its version.

@@ -78,7 +78,7 @@
 //!
 //! # The source
 //!
-//! Start reading in `tracing/trace.rs`. The modules in reading order:
+//! Start reading in `tracing/tracer/trace.rs`. The modules in reading order:
 //!
 //! - `window`: points and windows of the parameter plane
 //! - `family`: what is traced
@@ -86,6 +86,8 @@
 //! - `curve`: what a trace returns
 //! - `cubic`: curves between nodes
 //! - `options`: options and errors of a trace
+//! - `lengths`: what is close, short or accurate
+//! - `conditions`: points at which as many conditions hold as there are unknowns
 //! - `executor` and `watch`: threads, progress and cancellation, which the caller gives
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
@@ -95,6 +97,7 @@
 //! - `stack`: atlases over a third parameter, and where their structure changes
 
 mod atlas;
+pub mod conditions;
 mod cubic;
 mod curve;
 #[cfg(feature = "serde")]
@@ -103,6 +106,7 @@ mod executor;
 mod family;
 mod hybrid;
 mod inverse;
+mod lengths;
 mod options;
 mod polyline;
 mod regions;
@@ -141,7 +145,7 @@ pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;
-pub use tracing::count::Count;
+pub use tracing::tracer::count::Count;
 pub use tracing::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;
 pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
@@ -149,7 +153,7 @@ pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::seed::Seed;
 pub use tracing::special_points::SpecialPoint;
-pub use tracing::trace::trace;
+pub use tracing::tracer::trace::trace;
 pub use tracing::tracer::Tracer;
 pub use watch::{Progress, Report, Watch};
 pub use window::{Point, Window};

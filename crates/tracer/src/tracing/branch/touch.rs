@@ -5,9 +5,13 @@
 //! have a margin that vanishes there: such twins do not touch. And the value and the slope of a
 //! margin do not show where it vanishes if its slope changes within the shortest differences.
 
+use nalgebra::{U1, Vector1};
+
+use crate::conditions::{Conditions, Limits, Unsolved, secant, solve};
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
+use crate::options::TraceError;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, crossing};
 use crate::tracing::end::Special;
@@ -106,7 +110,7 @@ fn dip<F: Family>(
     };
     let floor = runs.options.interpolation.max(10.0 * runs.resolution(last.slope));
     if gap.abs() <= floor && !runs.is_singular(&last.point, margin, &places[1].node.tangent)? {
-        return Ok(Some((special(last.point, 1e-8 * runs.scale), length < 0.0)));
+        return Ok(Some((special(last.point, runs.lengths.touch), length < 0.0)));
     }
     let beside = value_beside(places[1], margin).unwrap_or(last.value);
     if (beside < 0.0) == (gap < 0.0) {
@@ -124,17 +128,6 @@ fn dip<F: Family>(
         let along = (point - places[1].node.point).dot(&places[1].node.tangent);
         (special(point, uncertainty), along < 0.0)
     }))
-}
-
-/// A place of a branch, with what the search for the lowest value of another margin needs.
-struct Probe {
-    point: Point,
-    /// The sine of the angle between the gradients of the two margins.
-    sine: f64,
-    /// The value of the other margin.
-    value: f64,
-    /// The length of its gradient.
-    slope: f64,
 }
 
 /// A boundary that is more than this many step lengths away does not touch the branch within the
@@ -158,56 +151,104 @@ fn parallel<F: Family>(
     start: [f64; 2],
     limits: [f64; 2],
 ) -> Traced<Option<(f64, Probe)>, F> {
-    let runs = track.runs;
-    let width = limits[1] - limits[0];
-    let probe = |length: f64| -> Traced<Option<Probe>, F> {
-        let reach = 0.3 * width + 100.0 * runs.options.tolerance;
-        let guess = place(length);
+    let options = &track.runs.options;
+    let mut parallel = Parallel {
+        track,
+        place,
+        near,
+        margin,
+        limits,
+        update: start[0] - start[1],
+        before: None,
+        first: f64::NAN,
+        probes: 0,
+        last: None,
+    };
+    let tolerance = 10.0 * options.tolerance;
+    let retreat = track.runs.lengths.solved;
+    let limits = Limits { retreat, ..Limits::new(f64::INFINITY, tolerance) };
+    Ok(match solve(&mut parallel, Vector1::new(start[0]), &limits)? {
+        Ok(_) | Err(Unsolved::Ceases { .. }) => parallel.last,
+        Err(_) => None,
+    })
+}
+
+/// A place of a branch where another margin has a value.
+struct Probe {
+    point: Point,
+    /// The value of the other margin.
+    value: f64,
+    /// The length of its gradient.
+    slope: f64,
+}
+
+/// A length along a branch at which the gradients of two margins are parallel.
+struct Parallel<'t, 'a, 'f, F: Family, P> {
+    track: &'t Track<'a, 'f, F>,
+    place: P,
+    near: &'t FootholdOf<F>,
+    margin: &'t F::Margin,
+    /// The least and the greatest length.
+    limits: [f64; 2],
+    /// The first update.
+    update: f64,
+    /// The length before and the sine there.
+    before: Option<[f64; 2]>,
+    /// The sine at the first place.
+    first: f64,
+    /// The number of places so far at which both margins exist.
+    probes: usize,
+    /// The last of these places, with the length up to it.
+    last: Option<(f64, Probe)>,
+}
+
+impl<F: Family, P: Fn(f64) -> Point> Conditions<U1> for Parallel<'_, '_, '_, F, P> {
+    type Error = TraceError<F::Error>;
+
+    /// The sine of the angle between the two boundaries.
+    fn values(&mut self, at: &Vector1<f64>) -> Traced<Option<Vector1<f64>>, F> {
+        let (track, near) = (self.track, self.near);
+        let (runs, tangent) = (track.runs, &near.node.tangent);
+        let reach = 0.3 * (self.limits[1] - self.limits[0]) + 100.0 * runs.options.tolerance;
+        let guess = (self.place)(at.x);
         let Some(found) = correct(runs, &track.margin, &guess, &near.gradient, reach)? else {
             return Ok(None);
         };
-        let (point, tangent) = (found.point, &near.node.tangent);
+        let point = found.point;
         let (Some(own), Some(other), Some(value)) = (
             runs.gradient(&point, &track.margin, tangent, track.radius)?,
-            runs.gradient(&point, margin, tangent, track.radius)?,
-            runs.margin(&point, margin)?,
+            runs.gradient(&point, self.margin, tangent, track.radius)?,
+            runs.margin(&point, self.margin)?,
         ) else {
             return Ok(None);
         };
-        let sine = own.perp(&other) / (own.norm() * other.norm());
-        Ok(Some(Probe { point, sine, value, slope: other.norm() }))
-    };
-    let mut length = start[0];
-    let Some(mut last) = probe(length)? else { return Ok(None) };
-    if last.value.abs() > FAR * width * last.slope {
-        return Ok(None);
+        self.last = Some((at.x, Probe { point, value, slope: other.norm() }));
+        Ok(Some(Vector1::new(own.perp(&other) / (own.norm() * other.norm()))))
     }
-    let (mut shift, first) = (start[1] - start[0], last.sine.abs());
-    let mut updates = 0;
-    for _ in 0..40 {
-        if updates >= UPDATES && last.sine.abs() > 0.5 * first {
-            return Ok(None);
-        }
-        let Some(now) = probe(length + shift)? else {
-            shift *= 0.5;
-            if shift.abs() <= 1e-10 * runs.scale {
-                return Ok(Some((length, last)));
-            }
-            continue;
+
+    fn slopes(
+        &mut self,
+        at: &Vector1<f64>,
+        sine: &Vector1<f64>,
+    ) -> Traced<Option<Vector1<f64>>, F> {
+        let width = self.limits[1] - self.limits[0];
+        let is_far = |(_, probe): &(f64, Probe)| probe.value.abs() > FAR * width * probe.slope;
+        let (at, sine) = (at.x, sine.x);
+        let hopeless = if self.probes == 0 {
+            self.first = sine;
+            self.last.as_ref().is_some_and(is_far)
+        } else {
+            self.probes >= UPDATES && sine.abs() > 0.5 * self.first.abs()
         };
-        length += shift;
-        updates += 1;
-        let turn = (now.sine - last.sine) / shift;
-        last = now;
-        shift = (length - last.sine / turn).clamp(limits[0], limits[1]) - length;
-        if shift == 0.0 && (length == limits[0] || length == limits[1]) || shift.is_nan() {
-            return Ok(None);
-        }
-        if shift.abs() <= 10.0 * runs.options.tolerance {
-            return Ok(Some((length, last)));
-        }
+        self.probes += 1;
+        let first = if sine == 0.0 { 1.0 } else { sine / self.update };
+        let slope = secant(&mut self.before, at, sine).unwrap_or(first);
+        Ok((!hopeless).then(|| Vector1::new(slope)))
     }
-    Ok(None)
+
+    fn allowed(&self, at: Vector1<f64>) -> Vector1<f64> {
+        at.map(|length| length.clamp(self.limits[0], self.limits[1]))
+    }
 }
 
 /// Whether another margin is so close to zero beside the step that its boundary may touch the
@@ -242,7 +283,7 @@ pub(crate) fn graze<F: Family>(
     }
     let arc = Cubic::between(&from.node, &end);
     let chord = arc.chord();
-    let slack = 1e-8 * track.runs.scale;
+    let slack = track.runs.lengths.touch;
     for start in [[chord, 0.75 * chord], [0.0, 0.25 * chord]] {
         let place = |length: f64| arc.at(length / chord);
         let found = parallel(track, place, from, margin, start, [-slack, chord + slack])?;

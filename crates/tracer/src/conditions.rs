@@ -1,0 +1,214 @@
+//! Points at which as many conditions hold as there are unknowns, by Newton's method.
+//!
+//! Every special point is of this kind: two margins vanish, or the gradient of one does, or two
+//! boundaries touch; with a third parameter, three conditions hold where such points meet. What the
+//! conditions are and how their derivatives are obtained is said beside each kind of point; how
+//! their common zero is approached, how it is known to be one, and why there may be none, is here.
+
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector};
+
+use crate::inverse;
+
+/// Conditions on unknowns, as many as there are unknowns.
+///
+/// The unknowns are real numbers of similar size, since distances between places are compared.
+pub trait Conditions<D: Dim>
+where
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
+{
+    /// Why a value could not be computed.
+    type Error;
+
+    /// What has to vanish; `None` where one of the values does not exist.
+    ///
+    /// # Errors
+    /// A value could not be computed.
+    fn values(&mut self, at: &OVector<f64, D>) -> Result<Option<OVector<f64, D>>, Self::Error>;
+
+    /// The derivatives of the values at the place at which they were computed last, with a row for
+    /// each value; `None` if there are none, or none that lead anywhere.
+    ///
+    /// # Errors
+    /// A value could not be computed.
+    fn slopes(
+        &mut self,
+        at: &OVector<f64, D>,
+        values: &OVector<f64, D>,
+    ) -> Result<Option<OMatrix<f64, D, D>>, Self::Error>;
+
+    /// The allowed place next to `at`. The default allows every place.
+    fn allowed(&self, at: OVector<f64, D>) -> OVector<f64, D> {
+        at
+    }
+}
+
+/// How a zero is searched for. Lengths are in the unknowns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The greatest distance of the zero from the start.
+    pub reach: f64,
+    /// The longest update: a longer one is only a direction.
+    pub stride: f64,
+    /// An update no longer than this ends the search.
+    pub tolerance: f64,
+    /// The error of a value. An update within ten times the error that it causes ends the search if
+    /// it is not much shorter than the update before, as does one within ten tolerances.
+    pub noise: f64,
+    /// An update no longer than this ends the search if it is shorter than a tenth of the update
+    /// before. Updates then shrink as their square, and the next one is beyond the digits.
+    pub square: f64,
+    /// Derivatives are used again if an update is no longer than this part of the one before.
+    pub reuse: f64,
+    /// Where the values do not exist, half of the update is taken back, unless it is no longer than
+    /// this.
+    pub retreat: f64,
+}
+
+impl Limits {
+    /// A search up to a distance that ends with an update of the length `tolerance`. Derivatives
+    /// are computed for every update, and the values must exist at every place.
+    #[must_use]
+    pub const fn new(reach: f64, tolerance: f64) -> Self {
+        let (stride, retreat) = (f64::INFINITY, f64::INFINITY);
+        Self { reach, stride, tolerance, noise: 0.0, square: 0.0, reuse: 0.0, retreat }
+    }
+}
+
+/// A zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Zero<D: Dim>
+where
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
+{
+    /// The place.
+    pub at: OVector<f64, D>,
+    /// The largest error of the place, as far as the tolerance and the noise say it.
+    pub error: f64,
+    /// The derivatives close to the place.
+    pub slopes: OMatrix<f64, D, D>,
+}
+
+/// Why no zero was found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unsolved<D: Dim>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    /// The search leads away, farther than allowed.
+    Leaves,
+    /// The derivatives do not determine an update.
+    Dependent,
+    /// The values do not exist at this place, nor on the way back from it.
+    Ceases {
+        /// The place.
+        at: OVector<f64, D>,
+        /// The length of the update that led away from where they exist, infinite at the start.
+        update: f64,
+    },
+    /// The updates did not become short.
+    Slow {
+        /// The last place.
+        at: OVector<f64, D>,
+        /// The length of the last update.
+        update: f64,
+    },
+}
+
+/// The zero of conditions near a place, by Newton's method.
+///
+/// ```
+/// use std::convert::Infallible;
+/// use nalgebra::{Matrix2, U2, Vector2};
+/// use stickslip_tracer::conditions::{Conditions, Limits, solve};
+///
+/// /// The circle of radius 5 and the hyperbola xy = 12, which cross at (3, 4).
+/// struct Crossing;
+///
+/// impl Conditions<U2> for Crossing {
+///     type Error = Infallible;
+///     fn values(&mut self, at: &Vector2<f64>) -> Result<Option<Vector2<f64>>, Infallible> {
+///         Ok(Some(Vector2::new(at.norm_squared() - 25.0, at.x * at.y - 12.0)))
+///     }
+///     fn slopes(
+///         &mut self,
+///         at: &Vector2<f64>,
+///         _: &Vector2<f64>,
+///     ) -> Result<Option<Matrix2<f64>>, Infallible> {
+///         Ok(Some(Matrix2::new(2.0 * at.x, 2.0 * at.y, at.y, at.x)))
+///     }
+/// }
+///
+/// let zero = solve(&mut Crossing, Vector2::new(2.5, 4.2), &Limits::new(1.0, 1e-12))?;
+/// let zero = zero.expect("they cross");
+/// assert!((zero.at - Vector2::new(3.0, 4.0)).norm() <= zero.error);
+/// // The other crossing, at (4, 3), is farther away than the search may lead.
+/// assert!(solve(&mut Crossing, Vector2::new(3.6, 3.4), &Limits::new(0.1, 1e-12))?.is_err());
+/// # Ok::<(), Infallible>(())
+/// ```
+///
+/// # Errors
+/// A value could not be computed.
+pub fn solve<D: Dim, C: Conditions<D>>(
+    conditions: &mut C,
+    start: OVector<f64, D>,
+    limits: &Limits,
+) -> Result<Result<Zero<D>, Unsolved<D>>, C::Error>
+where
+    DefaultAllocator: Allocator<D> + Allocator<D, D>,
+{
+    /// The greatest number of places. Updates that only halve have shrunk by 1e-12 then.
+    const ROUNDS: usize = 40;
+    let mut at = start.clone();
+    let mut update = &start - &start;
+    let mut size = f64::INFINITY;
+    let mut linear = None;
+    for _ in 0..ROUNDS {
+        let Some(values) = conditions.values(&at)? else {
+            if update.norm() <= limits.retreat {
+                return Ok(Err(Unsolved::Ceases { at, update: size }));
+            }
+            update *= 0.5;
+            at = conditions.allowed(at + &update);
+            continue;
+        };
+        if linear.is_none() {
+            let slopes = conditions.slopes(&at, &values)?;
+            linear = slopes.and_then(|slopes| Some((inverse::of(&slopes)?, slopes)));
+        }
+        let Some((inverse, slopes)) = &linear else { return Ok(Err(Unsolved::Dependent)) };
+        update = inverse * values;
+        let last = std::mem::replace(&mut size, update.norm());
+        if !size.is_finite() {
+            return Ok(Err(Unsolved::Dependent));
+        }
+        update *= (limits.stride / size).min(1.0);
+        let free = &at - &update;
+        let next = conditions.allowed(free.clone());
+        if next != free {
+            update = &at - &next;
+        }
+        let is_held = next == at && size > limits.tolerance;
+        at = next;
+        let within = (&at - &start).norm() <= limits.reach;
+        if is_held || !within {
+            return Ok(Err(Unsolved::Leaves));
+        }
+        let error = 10.0 * limits.tolerance.max(limits.noise * inverse.norm());
+        let is_noise = size <= error && size >= 0.5 * last;
+        let is_square = size <= limits.square && size < 0.1 * last && last.is_finite();
+        if size <= limits.tolerance || is_noise || is_square {
+            return Ok(Ok(Zero { at, error, slopes: slopes.clone() }));
+        }
+        let is_fast = size <= limits.reuse * last;
+        if !is_fast {
+            linear = None;
+        }
+    }
+    Ok(Err(Unsolved::Slow { at, update: size }))
+}
+
+/// The slope of a value of one unknown by the secant through the place before, if there is one.
+pub(crate) fn secant(before: &mut Option<[f64; 2]>, at: f64, value: f64) -> Option<f64> {
+    before.replace([at, value]).map(|[place, other]| (value - other) / (at - place))
+}
