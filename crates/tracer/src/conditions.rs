@@ -1,8 +1,8 @@
-//! Points at which as many conditions hold as there are unknowns, by Newton's method.
+//! Points at which as many conditions hold as there are unknowns.
 //!
 //! Every special point is of this kind: two margins vanish, or the gradient of one does, or two
 //! boundaries touch; with a third parameter, three conditions hold where such points meet. What the
-//! conditions are and how their derivatives are obtained is said beside each kind of point; how
+//! conditions are and how their derivatives are obtained is said beside each kind of point. How
 //! their common zero is approached, how it is known to be one, and why there may be none, is here.
 
 use nalgebra::allocator::Allocator;
@@ -10,38 +10,9 @@ use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector};
 
 use crate::inverse;
 
-/// Conditions on unknowns, as many as there are unknowns.
-///
-/// The unknowns are real numbers of similar size, since distances between places are compared.
-pub trait Conditions<D: Dim>
-where
-    DefaultAllocator: Allocator<D> + Allocator<D, D>,
-{
-    /// Why a value could not be computed.
-    type Error;
-
-    /// What has to vanish; `None` where one of the values does not exist.
-    ///
-    /// # Errors
-    /// A value could not be computed.
-    fn values(&mut self, at: &OVector<f64, D>) -> Result<Option<OVector<f64, D>>, Self::Error>;
-
-    /// The derivatives of the values at the place at which they were computed last, with a row for
-    /// each value; `None` if there are none, or none that lead anywhere.
-    ///
-    /// # Errors
-    /// A value could not be computed.
-    fn slopes(
-        &mut self,
-        at: &OVector<f64, D>,
-        values: &OVector<f64, D>,
-    ) -> Result<Option<OMatrix<f64, D, D>>, Self::Error>;
-
-    /// The allowed place next to `at`. The default allows every place.
-    fn allowed(&self, at: OVector<f64, D>) -> OVector<f64, D> {
-        at
-    }
-}
+/// What has to vanish at a place, and its derivatives, a row for each value: none where nothing
+/// determines them, or if they were not asked for.
+pub type Local<D> = (OVector<f64, D>, Option<OMatrix<f64, D, D>>);
 
 /// How a zero is searched for. Lengths are in the unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,63 +88,64 @@ where
 
 /// The zero of conditions near a place, by Newton's method.
 ///
+/// `conditions` are as many as there are unknowns, which should be of similar size. They are given a
+/// place and whether derivatives are asked for. They may move the place to the nearest one that is
+/// allowed, and return `None` where one of them does not exist.
+///
 /// ```
 /// use std::convert::Infallible;
-/// use nalgebra::{Matrix2, U2, Vector2};
-/// use stickslip_tracer::conditions::{Conditions, Limits, solve};
+/// use nalgebra::{Matrix2, Vector2};
+/// use stickslip_tracer::conditions::{Limits, solve};
 ///
-/// /// The circle of radius 5 and the hyperbola xy = 12, which cross at (3, 4).
-/// struct Crossing;
-///
-/// impl Conditions<U2> for Crossing {
-///     type Error = Infallible;
-///     fn values(&mut self, at: &Vector2<f64>) -> Result<Option<Vector2<f64>>, Infallible> {
-///         Ok(Some(Vector2::new(at.norm_squared() - 25.0, at.x * at.y - 12.0)))
-///     }
-///     fn slopes(
-///         &mut self,
-///         at: &Vector2<f64>,
-///         _: &Vector2<f64>,
-///     ) -> Result<Option<Matrix2<f64>>, Infallible> {
-///         Ok(Some(Matrix2::new(2.0 * at.x, 2.0 * at.y, at.y, at.x)))
-///     }
-/// }
-///
-/// let zero = solve(&mut Crossing, Vector2::new(2.5, 4.2), &Limits::new(1.0, 1e-12))?;
+/// // The circle of radius 5 and the hyperbola xy = 12 cross at (3, 4).
+/// let crossing = |at: &mut Vector2<f64>, _: bool| {
+///     let values = Vector2::new(at.norm_squared() - 25.0, at.x * at.y - 12.0);
+///     let slopes = Matrix2::new(2.0 * at.x, 2.0 * at.y, at.y, at.x);
+///     Ok::<_, Infallible>(Some((values, Some(slopes))))
+/// };
+/// let zero = solve(Vector2::new(2.5, 4.2), &Limits::new(1.0, 1e-12), crossing)?;
 /// let zero = zero.expect("they cross");
 /// assert!((zero.at - Vector2::new(3.0, 4.0)).norm() <= zero.error);
-/// // The other crossing, at (4, 3), is farther away than the search may lead.
-/// assert!(solve(&mut Crossing, Vector2::new(3.6, 3.4), &Limits::new(0.1, 1e-12))?.is_err());
+/// // From here it is farther away than the search may lead.
+/// assert!(solve(Vector2::new(2.0, 4.2), &Limits::new(0.1, 1e-12), crossing)?.is_err());
 /// # Ok::<(), Infallible>(())
 /// ```
 ///
 /// # Errors
-/// A value could not be computed.
-pub fn solve<D: Dim, C: Conditions<D>>(
-    conditions: &mut C,
+/// The conditions cannot be computed at a place.
+pub fn solve<D: Dim, E>(
     start: OVector<f64, D>,
     limits: &Limits,
-) -> Result<Result<Zero<D>, Unsolved<D>>, C::Error>
+    mut conditions: impl FnMut(&mut OVector<f64, D>, bool) -> Result<Option<Local<D>>, E>,
+) -> Result<Result<Zero<D>, Unsolved<D>>, E>
 where
     DefaultAllocator: Allocator<D> + Allocator<D, D>,
 {
     /// The greatest number of places. Updates that only halve have shrunk by 1e-12 then.
     const ROUNDS: usize = 40;
+    let mut before = start.clone();
     let mut at = start.clone();
     let mut update = &start - &start;
     let mut size = f64::INFINITY;
     let mut linear = None;
     for _ in 0..ROUNDS {
-        let Some(values) = conditions.values(&at)? else {
+        let free = at.clone();
+        let found = conditions(&mut at, linear.is_none())?;
+        if at != free {
+            update = &before - &at;
+            if at == before {
+                return Ok(Err(Unsolved::Leaves));
+            }
+        }
+        let Some((values, slopes)) = found else {
             if update.norm() <= limits.retreat {
                 return Ok(Err(Unsolved::Ceases { at, update: size }));
             }
             update *= 0.5;
-            at = conditions.allowed(at + &update);
+            at += &update;
             continue;
         };
         if linear.is_none() {
-            let slopes = conditions.slopes(&at, &values)?;
             linear = slopes.and_then(|slopes| Some((inverse::of(&slopes)?, slopes)));
         }
         let Some((inverse, slopes)) = &linear else { return Ok(Err(Unsolved::Dependent)) };
@@ -183,15 +155,10 @@ where
             return Ok(Err(Unsolved::Dependent));
         }
         update *= (limits.stride / size).min(1.0);
-        let free = &at - &update;
-        let next = conditions.allowed(free.clone());
-        if next != free {
-            update = &at - &next;
-        }
-        let is_held = next == at && size > limits.tolerance;
-        at = next;
+        before.copy_from(&at);
+        at -= &update;
         let within = (&at - &start).norm() <= limits.reach;
-        if is_held || !within {
+        if !within {
             return Ok(Err(Unsolved::Leaves));
         }
         let error = 10.0 * limits.tolerance.max(limits.noise * inverse.norm());

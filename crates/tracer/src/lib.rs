@@ -145,7 +145,6 @@ pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;
-pub use tracing::tracer::count::Count;
 pub use tracing::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;
 pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
@@ -153,8 +152,9 @@ pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::seed::Seed;
 pub use tracing::special_points::SpecialPoint;
-pub use tracing::tracer::trace::trace;
 pub use tracing::tracer::Tracer;
+pub use tracing::tracer::count::Count;
+pub use tracing::tracer::trace::trace;
 pub use watch::{Progress, Report, Watch};
 pub use window::{Point, Window};
 

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix2, Matrix3, U3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::conditions::{self, Limits, Unsolved, Zero};
 use crate::family::Family;
@@ -63,8 +63,7 @@ pub(super) fn solve<F: Family>(
     guess: (Point, f64),
     within: &Box3,
 ) -> Option<Solved<F::Margin>> {
-    let start = within.unknowns(&guess.0, guess.1);
-    Meeting3 { family, conditions, within }.solve(start)
+    newton(family, conditions, within.unknowns(&guess.0, guess.1), within)
 }
 
 /// What a search for a meeting finds.
@@ -92,7 +91,7 @@ pub(super) fn touching<F: Family>(
     within: &Box3,
 ) -> Option<Meeting> {
     let conditions = tangent(family, &vague.conditions, &vague.at, within)?;
-    match (Meeting3 { family, conditions, within }).solve(vague.at)? {
+    match newton(family, conditions, vague.at, within)? {
         Solved::Sure(meeting) => Some(meeting),
         Solved::Vague(_) => None,
     }
@@ -109,62 +108,34 @@ fn meeting(kind: MeetingKind, at: &Vector3<f64>, within: &Box3) -> Option<Meetin
     inside.then(|| Meeting { kind, value: within.value(&at), point: within.point(&at) })
 }
 
-/// Conditions of a meeting, in parts of a box.
-struct Meeting3<'a, F: Family, At> {
-    family: &'a At,
-    conditions: Conditions<F::Margin>,
-    within: &'a Box3,
-}
-
-impl<F: Family, At: Fn(f64) -> F> Meeting3<'_, F, At> {
-    fn solve(mut self, start: Vector3<f64>) -> Option<Solved<F::Margin>> {
-        let Lengths { half, least, .. } = Lengths::PARTS;
-        let limits = Limits {
-            stride: STRIDE,
-            square: half,
-            retreat: half,
-            ..Limits::new(f64::INFINITY, least)
-        };
-        let Ok(found) = conditions::solve(&mut self, start, &limits);
-        let Self { family, conditions, within } = self;
-        match found {
-            Ok(Zero { at, slopes, .. }) if independent(&slopes) => {
-                is_passage(family, &conditions, (&at, &slopes), within)
-                    .then(|| meeting(conditions.kind, &at, within))?
-                    .map(Solved::Sure)
-            }
-            Err(Unsolved::Slow { update, .. }) if update >= LONG_STEP => None,
-            Ok(Zero { at, .. }) | Err(Unsolved::Slow { at, .. }) => {
-                Some(Solved::Vague(Vague { conditions, at }))
-            }
-            Err(_) => None,
-        }
-    }
-}
-
-impl<F: Family, At: Fn(f64) -> F> conditions::Conditions<U3> for Meeting3<'_, F, At> {
-    type Error = Infallible;
-
-    fn values(&mut self, at: &Vector3<f64>) -> Result<Option<Vector3<f64>>, Infallible> {
-        if !Box3::is_defined(at) {
-            return Ok(None);
-        }
-        let Self { family, conditions, within } = self;
-        conditions.move_to(&family(within.value(at)), &within.point(at));
-        Ok(residuals(*family, conditions, at, within))
-    }
-
-    fn slopes(
-        &mut self,
-        at: &Vector3<f64>,
-        _: &Vector3<f64>,
-    ) -> Result<Option<Matrix3<f64>>, Infallible> {
-        Ok(slopes(self.family, &self.conditions, at, self.within))
-    }
-
-    fn allowed(&self, mut at: Vector3<f64>) -> Vector3<f64> {
+fn newton<F: Family>(
+    family: &impl Fn(f64) -> F,
+    mut conditions: Conditions<F::Margin>,
+    start: Vector3<f64>,
+    within: &Box3,
+) -> Option<Solved<F::Margin>> {
+    let Lengths { half, least, .. } = Lengths::PARTS;
+    let limits =
+        Limits { stride: STRIDE, square: half, retreat: half, ..Limits::new(f64::INFINITY, least) };
+    let Ok(found) = conditions::solve(start, &limits, |at, _| {
         at.z = at.z.clamp(0.0, 1.0);
-        at
+        if !Box3::is_defined(at) {
+            return Ok::<_, Infallible>(None);
+        }
+        conditions.move_to(&family(within.value(at)), &within.point(at));
+        let values = residuals(family, &conditions, at, within);
+        Ok(values.map(|values| (values, slopes(family, &conditions, at, within))))
+    });
+    match found {
+        Ok(Zero { at, slopes, .. }) if independent(&slopes) => {
+            let meets = is_passage(family, &conditions, (&at, &slopes), within);
+            meets.then(|| meeting(conditions.kind, &at, within))?.map(Solved::Sure)
+        }
+        Err(Unsolved::Slow { update, .. }) if update >= LONG_STEP => None,
+        Ok(Zero { at, .. }) | Err(Unsolved::Slow { at, .. }) => {
+            Some(Solved::Vague(Vague { conditions, at }))
+        }
+        Err(_) => None,
     }
 }
 

@@ -4,12 +4,12 @@
 //! derivatives would take five times as long as a run, and cubics are checked by values of the
 //! margin, to 1e-10.
 
-use nalgebra::{Matrix2, U2};
+use nalgebra::Matrix2;
 
-use crate::conditions::{Conditions, Limits, Unsolved, Zero, solve};
+use crate::conditions::{Limits, Unsolved, Zero, solve};
 use crate::family::Family;
 use crate::lengths::angle;
-use crate::options::{TraceError, TraceOptions};
+use crate::options::TraceOptions;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
 
@@ -103,47 +103,35 @@ pub(crate) fn crossing<F: Family>(
     radius: f64,
     reach: f64,
 ) -> Traced<Option<(Point, f64)>, F> {
-    let mut crossing = Crossing { runs, margins, direction, radius, sine: 0.0 };
     let TraceOptions { tolerance, noise, .. } = runs.options;
     let last = runs.lengths.half;
     let limits = Limits { noise, reuse: 0.01, retreat: last, ..Limits::new(reach, tolerance) };
-    Ok(match solve(&mut crossing, *guess, &limits)? {
+    let mut sine = 0.0;
+    let found: Traced<_, F> = solve(*guess, &limits, |at, steep| {
+        let values = margins.map(|margin| runs.margin(at, margin));
+        let [Some(one), Some(two)] = both(values)? else { return Ok(None) };
+        let values = Point::new(one, two);
+        if !steep {
+            return Ok(Some((values, None)));
+        }
+        let gradients = margins.map(|margin| runs.gradient(at, margin, direction, radius));
+        let [Some(one), Some(two)] = both(gradients)? else { return Ok(Some((values, None))) };
+        sine = one.perp(&two).abs() / (one.norm() * two.norm());
+        let slopes = Matrix2::from_rows(&[one.transpose(), two.transpose()]);
+        Ok(Some((values, Some(slopes).filter(|_| sine > angle::DEPENDENT))))
+    });
+    Ok(match found? {
         Ok(Zero { at, error, .. }) => Some((at, error)),
-        Err(Unsolved::Ceases { at, update })
-            if update <= last && crossing.sine >= angle::TRANSVERSAL =>
-        {
+        Err(Unsolved::Ceases { at, update }) if update <= last && sine >= angle::TRANSVERSAL => {
             Some((at, update.max(10.0 * tolerance)))
         }
         Err(_) => None,
     })
 }
 
-/// Two margins that vanish.
-struct Crossing<'r, 'f, F: Family> {
-    runs: &'r Runs<'f, F>,
-    margins: [&'r F::Margin; 2],
-    direction: &'r Point,
-    radius: f64,
-    /// The sine of the angle between the two boundaries.
-    sine: f64,
-}
-
-impl<F: Family> Conditions<U2> for Crossing<'_, '_, F> {
-    type Error = TraceError<F::Error>;
-
-    fn values(&mut self, at: &Point) -> Traced<Option<Point>, F> {
-        let [one, two] = self.margins.map(|margin| self.runs.margin(at, margin));
-        Ok(one?.zip(two?).map(|(one, two)| Point::new(one, two)))
-    }
-
-    fn slopes(&mut self, at: &Point, _: &Point) -> Traced<Option<Matrix2<f64>>, F> {
-        let gradient = |margin| self.runs.gradient(at, margin, self.direction, self.radius);
-        let [one, two] = self.margins.map(gradient);
-        let (Some(one), Some(two)) = (one?, two?) else { return Ok(None) };
-        self.sine = one.perp(&two).abs() / (one.norm() * two.norm());
-        let independent = self.sine > angle::DEPENDENT;
-        Ok(independent.then(|| Matrix2::from_rows(&[one.transpose(), two.transpose()])))
-    }
+/// Both of two results.
+fn both<T, E>([one, two]: [Result<T, E>; 2]) -> Result<[T; 2], E> {
+    Ok([one?, two?])
 }
 
 /// The place near `guess` where the gradient of a margin vanishes.
@@ -157,40 +145,16 @@ pub(crate) fn stationary<F: Family>(
     spread: f64,
     reach: f64,
 ) -> Traced<Option<Point>, F> {
-    let mut flat = Flat { runs, margin, h: spread, last: None, second: Matrix2::zeros() };
-    let zero = solve(&mut flat, *guess, &Limits::new(reach, runs.options.tolerance))?;
-    Ok(zero.ok().map(|zero| zero.at))
-}
-
-/// A margin whose gradient vanishes.
-struct Flat<'r, 'f, F: Family> {
-    runs: &'r Runs<'f, F>,
-    margin: &'r F::Margin,
-    /// The step of the differences.
-    h: f64,
-    /// The last place.
-    last: Option<Point>,
-    /// The second derivatives there.
-    second: Matrix2<f64>,
-}
-
-impl<F: Family> Conditions<U2> for Flat<'_, '_, F> {
-    type Error = TraceError<F::Error>;
-
-    fn values(&mut self, at: &Point) -> Traced<Option<Point>, F> {
-        if let Some(last) = self.last.replace(*at) {
-            self.h = (0.1 * (at - last).norm()).min(self.h);
+    let (mut h, mut last) = (spread, None);
+    let limits = Limits::new(reach, runs.options.tolerance);
+    let zero: Traced<_, F> = solve(*guess, &limits, |at, _| {
+        if let Some(last) = last.replace(*at) {
+            h = (0.1 * (*at - last).norm()).min(h);
         }
-        let found = derivatives(self.runs, self.margin, at, self.h)?;
-        Ok(found.map(|(gradient, second)| {
-            self.second = second;
-            gradient
-        }))
-    }
-
-    fn slopes(&mut self, _: &Point, _: &Point) -> Traced<Option<Matrix2<f64>>, F> {
-        Ok(Some(self.second))
-    }
+        let found = derivatives(runs, margin, at, h)?;
+        Ok(found.map(|(gradient, second)| (gradient, Some(second))))
+    });
+    Ok(zero?.ok().map(|zero| zero.at))
 }
 
 /// The gradient and the second derivatives of a margin by differences with step `h`.

@@ -9,13 +9,12 @@
 //! followed along the boundary of the graze, by the polynomial in √r through the margin at four
 //! distances, and its zero is simple. Two distances must agree on it.
 
-use nalgebra::{U1, Vector1};
+use nalgebra::Vector1;
 
-use crate::conditions::{Conditions, Limits, secant, solve};
+use crate::conditions::{Limits, secant, solve};
 use crate::curve::VertexKind;
 use crate::family::Family;
 use crate::lengths::Lengths;
-use crate::options::TraceError;
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
 use crate::tracing::end::Special;
@@ -192,10 +191,25 @@ impl<F: Family> Root<'_, F> {
 
     /// The zero of m₀ by the secant method.
     fn zero(&self, near: f64) -> Traced<Option<f64>, F> {
-        let Lengths { scale, solved, .. } = self.runs.lengths;
-        let mut limit = Limit { root: self, near, before: None };
-        let zero = solve(&mut limit, Vector1::zeros(), &Limits::new(0.1 * scale, solved))?;
-        Ok(zero.ok().map(|zero| zero.at.x))
+        let Lengths { scale, piece, touch, solved, .. } = self.runs.lengths;
+        let mut before = None;
+        let limits = Limits::new(0.1 * scale, solved);
+        let zero: Traced<_, F> = solve(Vector1::zeros(), &limits, |at, _| {
+            let Some(value) = self.limit(at.x, near)? else { return Ok(None) };
+            let mut slope = secant(&mut before, at.x, value);
+            // The margin may exist on one side only.
+            let mut steps = [piece, -piece, touch, -touch].into_iter();
+            while slope.is_none()
+                && let Some(step) = steps.next()
+            {
+                if let Some(ahead) = self.limit(at.x + step, near)? {
+                    slope = Some((ahead - value) / step);
+                    before = Some([at.x + step, ahead]);
+                }
+            }
+            Ok(Some((Vector1::new(value), slope.map(Vector1::new))))
+        });
+        Ok(zero?.ok().map(|zero| zero.at.x))
     }
 
     /// The point of the boundary of the graze at a place along it.
@@ -226,42 +240,5 @@ impl<F: Family> Root<'_, F> {
         };
         let limit = values.iter().map(|&(root, own)| own * weight(root)).sum::<f64>();
         Ok(Some(limit).filter(|limit| limit.is_finite()))
-    }
-}
-
-/// m₀ along the boundary of a graze.
-struct Limit<'r, 's, F: Family> {
-    root: &'r Root<'s, F>,
-    near: f64,
-    /// The place before and the value there.
-    before: Option<[f64; 2]>,
-}
-
-impl<F: Family> Conditions<U1> for Limit<'_, '_, F> {
-    type Error = TraceError<F::Error>;
-
-    fn values(&mut self, at: &Vector1<f64>) -> Traced<Option<Vector1<f64>>, F> {
-        Ok(self.root.limit(at.x, self.near)?.map(Vector1::new))
-    }
-
-    fn slopes(
-        &mut self,
-        at: &Vector1<f64>,
-        value: &Vector1<f64>,
-    ) -> Traced<Option<Vector1<f64>>, F> {
-        let (at, value) = (at.x, value.x);
-        let mut slope = secant(&mut self.before, at, value);
-        let Lengths { piece, touch, .. } = self.root.runs.lengths;
-        // The margin may exist on one side only.
-        for step in [piece, -piece, touch, -touch] {
-            if slope.is_some() {
-                break;
-            }
-            if let Some(ahead) = self.root.limit(at + step, self.near)? {
-                slope = Some((ahead - value) / step);
-                self.before = Some([at + step, ahead]);
-            }
-        }
-        Ok(slope.map(Vector1::new))
     }
 }

@@ -5,13 +5,12 @@
 //! have a margin that vanishes there: such twins do not touch. And the value and the slope of a
 //! margin do not show where it vanishes if its slope changes within the shortest differences.
 
-use nalgebra::{U1, Vector1};
+use nalgebra::Vector1;
 
-use crate::conditions::{Conditions, Limits, Unsolved, secant, solve};
+use crate::conditions::{Limits, Unsolved, secant, solve};
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
-use crate::options::TraceError;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, crossing};
 use crate::tracing::end::Special;
@@ -151,26 +150,47 @@ fn parallel<F: Family>(
     start: [f64; 2],
     limits: [f64; 2],
 ) -> Traced<Option<(f64, Probe)>, F> {
-    let options = &track.runs.options;
-    let mut parallel = Parallel {
-        track,
-        place,
-        near,
-        margin,
-        limits,
-        update: start[0] - start[1],
-        before: None,
-        first: f64::NAN,
-        probes: 0,
-        last: None,
+    let (runs, tangent) = (track.runs, &near.node.tangent);
+    let width = limits[1] - limits[0];
+    let reach = 0.3 * width + 100.0 * runs.options.tolerance;
+    let search = Limits {
+        retreat: runs.lengths.solved,
+        ..Limits::new(f64::INFINITY, 10.0 * runs.options.tolerance)
     };
-    let tolerance = 10.0 * options.tolerance;
-    let retreat = track.runs.lengths.solved;
-    let limits = Limits { retreat, ..Limits::new(f64::INFINITY, tolerance) };
-    Ok(match solve(&mut parallel, Vector1::new(start[0]), &limits)? {
-        Ok(_) | Err(Unsolved::Ceases { .. }) => parallel.last,
-        Err(_) => None,
-    })
+    let (mut before, mut first, mut probes) = (None, 0.0, 0);
+    let mut last: Option<(f64, Probe)> = None;
+    let found: Traced<_, F> = solve(Vector1::new(start[0]), &search, |at, _| {
+        at.x = at.x.clamp(limits[0], limits[1]);
+        let guess = place(at.x);
+        let Some(found) = correct(runs, &track.margin, &guess, &near.gradient, reach)? else {
+            return Ok(None);
+        };
+        let point = found.point;
+        let (Some(own), Some(other), Some(value)) = (
+            runs.gradient(&point, &track.margin, tangent, track.radius)?,
+            runs.gradient(&point, margin, tangent, track.radius)?,
+            runs.margin(&point, margin)?,
+        ) else {
+            return Ok(None);
+        };
+        let (sine, slope) = (own.perp(&other) / (own.norm() * other.norm()), other.norm());
+        last = Some((at.x, Probe { point, value, slope }));
+        if probes == 0 {
+            first = sine;
+        }
+        let hopeless = if probes == 0 {
+            value.abs() > FAR * width * slope
+        } else {
+            probes >= UPDATES && sine.abs() > 0.5 * first.abs()
+        };
+        probes += 1;
+        // The first update leads to the second place.
+        let to_second = if sine == 0.0 { 1.0 } else { sine / (start[0] - start[1]) };
+        let turn = secant(&mut before, at.x, sine).unwrap_or(to_second);
+        Ok(Some((Vector1::new(sine), (!hopeless).then(|| Vector1::new(turn)))))
+    });
+    let exists = matches!(found?, Ok(_) | Err(Unsolved::Ceases { .. }));
+    Ok(last.filter(|_| exists))
 }
 
 /// A place of a branch where another margin has a value.
@@ -180,75 +200,6 @@ struct Probe {
     value: f64,
     /// The length of its gradient.
     slope: f64,
-}
-
-/// A length along a branch at which the gradients of two margins are parallel.
-struct Parallel<'t, 'a, 'f, F: Family, P> {
-    track: &'t Track<'a, 'f, F>,
-    place: P,
-    near: &'t FootholdOf<F>,
-    margin: &'t F::Margin,
-    /// The least and the greatest length.
-    limits: [f64; 2],
-    /// The first update.
-    update: f64,
-    /// The length before and the sine there.
-    before: Option<[f64; 2]>,
-    /// The sine at the first place.
-    first: f64,
-    /// The number of places so far at which both margins exist.
-    probes: usize,
-    /// The last of these places, with the length up to it.
-    last: Option<(f64, Probe)>,
-}
-
-impl<F: Family, P: Fn(f64) -> Point> Conditions<U1> for Parallel<'_, '_, '_, F, P> {
-    type Error = TraceError<F::Error>;
-
-    /// The sine of the angle between the two boundaries.
-    fn values(&mut self, at: &Vector1<f64>) -> Traced<Option<Vector1<f64>>, F> {
-        let (track, near) = (self.track, self.near);
-        let (runs, tangent) = (track.runs, &near.node.tangent);
-        let reach = 0.3 * (self.limits[1] - self.limits[0]) + 100.0 * runs.options.tolerance;
-        let guess = (self.place)(at.x);
-        let Some(found) = correct(runs, &track.margin, &guess, &near.gradient, reach)? else {
-            return Ok(None);
-        };
-        let point = found.point;
-        let (Some(own), Some(other), Some(value)) = (
-            runs.gradient(&point, &track.margin, tangent, track.radius)?,
-            runs.gradient(&point, self.margin, tangent, track.radius)?,
-            runs.margin(&point, self.margin)?,
-        ) else {
-            return Ok(None);
-        };
-        self.last = Some((at.x, Probe { point, value, slope: other.norm() }));
-        Ok(Some(Vector1::new(own.perp(&other) / (own.norm() * other.norm()))))
-    }
-
-    fn slopes(
-        &mut self,
-        at: &Vector1<f64>,
-        sine: &Vector1<f64>,
-    ) -> Traced<Option<Vector1<f64>>, F> {
-        let width = self.limits[1] - self.limits[0];
-        let is_far = |(_, probe): &(f64, Probe)| probe.value.abs() > FAR * width * probe.slope;
-        let (at, sine) = (at.x, sine.x);
-        let hopeless = if self.probes == 0 {
-            self.first = sine;
-            self.last.as_ref().is_some_and(is_far)
-        } else {
-            self.probes >= UPDATES && sine.abs() > 0.5 * self.first.abs()
-        };
-        self.probes += 1;
-        let first = if sine == 0.0 { 1.0 } else { sine / self.update };
-        let slope = secant(&mut self.before, at, sine).unwrap_or(first);
-        Ok((!hopeless).then(|| Vector1::new(slope)))
-    }
-
-    fn allowed(&self, at: Vector1<f64>) -> Vector1<f64> {
-        at.map(|length| length.clamp(self.limits[0], self.limits[1]))
-    }
 }
 
 /// Whether another margin is so close to zero beside the step that its boundary may touch the
