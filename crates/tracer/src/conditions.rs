@@ -88,9 +88,9 @@ where
 
 /// The zero of conditions near a place, by Newton's method.
 ///
-/// `conditions` are as many as there are unknowns, which should be of similar size. They are given a
-/// place and whether derivatives are asked for. They may move the place to the nearest one that is
-/// allowed, and return `None` where one of them does not exist.
+/// `conditions` are as many as there are unknowns, which should be of similar size. They are given
+/// a place and whether derivatives are asked for. They may move the place to the nearest one that
+/// is allowed, and return `None` where one of them does not exist.
 ///
 /// ```
 /// use std::convert::Infallible;

@@ -55,8 +55,8 @@ impl Box3 {
     }
 }
 
-/// The place and the value near a guess at which the conditions hold; `None` if there is none in the
-/// box, or if a margin ceases to exist on the way.
+/// The place and the value near a guess at which the conditions hold; `None` if there is none in
+/// the box, or if a margin ceases to exist on the way.
 pub(super) fn solve<F: Family>(
     family: &impl Fn(f64) -> F,
     conditions: Conditions<F::Margin>,

@@ -77,7 +77,8 @@ fn end<F: Family>(track: &Track<'_, '_, F>, point: Point, uncertainty: f64) -> S
 ///
 /// Towards a cusp a boundary bends ever more, and its margin ceases to exist. So the cusp ends the
 /// branch only if the cubic that leads into it is as close to the boundary as the options ask, or
-/// if the wedge is too thin for labels and it is no farther from the boundary than places that count as one.
+/// if its wedge is too thin for labels and it is no farther from the boundary than places that
+/// count as one.
 pub(crate) fn reached<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
