@@ -50,7 +50,7 @@ pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
     };
     let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
     write(arguments, points, &LOCATED, |contact| {
-        let located = atlas.locate(contact);
+        let located = atlas.locate([contact.kappa(), contact.psi()]);
         let region = located.region.map_err(|why| why.to_string()).map(|region| {
             let itinerary = atlas.itinerary(region);
             [switch_count(itinerary).to_string(), itinerary.to_owned(), region.to_string()]

@@ -128,10 +128,10 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
         stored.push(write_json(file, &gaining::Document::from(gained))?);
     }
     if let Some(plot) = plot {
-        stored.push(plot.write(Ok(pictures::atlas::draw(&verified.atlas)))?);
+        stored.push(plot.write(Ok(pictures::atlas::draw(&verified)))?);
     }
     publish(stored)?;
-    Failure::if_doubtful(out, verified.report.objection())?;
+    Failure::if_doubtful(out, verified.objection())?;
     match (lines, gained) {
         (Some(path), Some(gained)) => Failure::if_doubtful(path, gained.objection()),
         _ => Ok(()),
