@@ -401,7 +401,10 @@ impl Family for CollisionFamily {
         }
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
+    fn free_run(
+        &self,
+        point: &Point,
+    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
         Ok(match self {
             Self::Exact(plane) => {
                 let found = exact::margins(&plane.contact_or_any(point))?;

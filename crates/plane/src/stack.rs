@@ -16,9 +16,7 @@ use crate::progress::{InParallel, Progress, Report, SILENT};
 #[cfg(feature = "serde")]
 mod document;
 #[cfg(feature = "serde")]
-pub use document::{
-    ChangeFields, EffectFields, LayerFields, MeetingFields, SCHEMA, StackDocument,
-};
+pub use document::{ChangeFields, EffectFields, LayerFields, MeetingFields, SCHEMA, StackDocument};
 
 /// The atlases of a window at several dampings, and what changes between them.
 #[derive(Clone, Debug)]

@@ -9,9 +9,7 @@ use crate::options::{TraceError, TraceOptions};
 use crate::regions::finding::{Finding, SubdivisionError};
 use crate::regions::locate::Location;
 use crate::regions::subdivision::Subdivision;
-use crate::regions::verify::report::{
-    Mismatch, Reason, Unverified, Verification, VerifyError,
-};
+use crate::regions::verify::report::{Mismatch, Reason, Unverified, Verification, VerifyError};
 use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::tracing::state::State;

@@ -130,7 +130,7 @@ pub use hybrid::{
     DynamicFamily, DynamicFired, DynamicModeOf, DynamicProblem, DynamicSetting, FamilyError,
     HybridFamily, Itinerary, ModeOf, Problem,
 };
-pub use names::{Names, Unnamed};
+pub use names::{Names, RunNames, Unnamed};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;

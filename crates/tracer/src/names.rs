@@ -2,7 +2,10 @@
 
 use std::fmt::Debug;
 
+use stickslip_solver::{Margin, Place};
+
 use crate::curve::Vertex;
+use crate::hybrid::Itinerary;
 use crate::tracing::network::Unresolved;
 use crate::window::Point;
 
@@ -26,6 +29,11 @@ pub trait Names<Label, Margin> {
 
     /// A label in words.
     fn text(&self, label: &Label) -> String;
+
+    /// A label as shortly as a picture has room for.
+    fn short(&self, label: &Label) -> String {
+        self.text(label)
+    }
 
     /// What happens where a margin vanishes, in a word.
     fn kind(&self, margin: &Margin) -> &'static str;
@@ -80,5 +88,64 @@ impl<Label: Debug, Margin> Names<Label, Margin> for Unnamed {
 
     fn place(&self, point: &Point) -> String {
         format!("({:?}, {:?})", point.x, point.y)
+    }
+}
+
+/// The names in an atlas of a hybrid system.
+///
+/// ```
+/// use stickslip_tracer::{Itinerary, Names, RunNames};
+///
+/// let axes = ["height".to_owned(), "e".to_owned()];
+/// let names = RunNames { family: "ball".to_owned(), axes, guards: vec!["bounce".to_owned()] };
+/// assert_eq!(names.text(&Itinerary::Fires(vec![0, 0])), "bounce; bounce");
+/// assert_eq!(names.short(&Itinerary::Begins(vec![0, 0])), "2+");
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RunNames {
+    /// What was traced.
+    pub family: String,
+    /// The names of the two parameters.
+    pub axes: [String; 2],
+    /// The names of the guards that itineraries count.
+    pub guards: Vec<String>,
+}
+
+impl Names<Itinerary, Margin> for RunNames {
+    fn axes(&self) -> [&str; 2] {
+        self.axes.each_ref().map(String::as_str)
+    }
+
+    /// The guards that fire, and how a run ends that does not come to its end.
+    fn text(&self, label: &Itinerary) -> String {
+        let name = |guard: &usize| self.guards.get(*guard).map_or("", String::as_str);
+        let names = |guards: &[usize]| guards.iter().map(name).collect::<Vec<_>>().join("; ");
+        match label {
+            Itinerary::Fires(guards) => names(guards),
+            Itinerary::Begins(guards) => format!("{}; …", names(guards)),
+            Itinerary::Accumulates => "accumulates".to_owned(),
+            Itinerary::Unfinished => "unfinished".to_owned(),
+            Itinerary::Fails => "fails".to_owned(),
+        }
+    }
+
+    /// The number of events.
+    fn short(&self, label: &Itinerary) -> String {
+        match label {
+            Itinerary::Fires(guards) => guards.len().to_string(),
+            Itinerary::Begins(guards) => format!("{}+", guards.len()),
+            Itinerary::Accumulates => "∞".to_owned(),
+            Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+        }
+    }
+
+    fn kind(&self, margin: &Margin) -> &'static str {
+        match margin.place {
+            Place::End => "event-at-end",
+            Place::Minimum { .. } | Place::Maximum { .. } => "graze",
+            Place::Exit(_) => "order",
+            Place::Start { .. } => "event-at-start",
+            Place::Branch(_) => "branch",
+        }
     }
 }

@@ -3,7 +3,7 @@
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_plane::stack::{DampingLayer, DampingStack};
 use stickslip_solver::Margin;
-use stickslip_tracer::{Change, Effect, Itinerary, Layer, Point, Stack};
+use stickslip_tracer::{Change, Effect, Itinerary, Layer, Names, Point, RunNames, Stack};
 
 use super::atlas::{KINDS, boundaries, stroke};
 use super::family::{KINDS as KINDS_OF_RUNS, STROKES, kind};
@@ -107,12 +107,8 @@ pub fn draw(stack: &DampingStack) -> Svg {
 
 /// The same picture of the atlases of a hybrid system over its parameter `over`.
 #[must_use]
-pub fn draw_runs(
-    stack: &Stack<Itinerary, Margin>,
-    family: &str,
-    axes: [&str; 2],
-    over: &str,
-) -> Svg {
+pub fn draw_runs(stack: &Stack<Itinerary, Margin>, names: &RunNames, over: &str) -> Svg {
+    let (family, axes) = (&names.family, names.axes());
     let sheet = |layer: &Layer<Itinerary, Margin>| {
         let plane = &layer.atlas.plane;
         let curves = plane.curves().iter().map(|curve| {

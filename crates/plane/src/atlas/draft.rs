@@ -44,10 +44,8 @@ impl Draft for CollisionDraft<'_> {
     /// then makes the same regions, bit for bit.
     fn drawn(&self, mut network: NetworkOf<CollisionFamily>) -> Network<String, BoundaryKind> {
         network.name_vertices();
-        let mut network = network.map(
-            |label| itinerary(&self.any, label),
-            |margin| BoundaryKind::of(&self.any, margin),
-        );
+        let mut network = network
+            .map(|label| itinerary(&self.any, label), |margin| BoundaryKind::of(&self.any, margin));
         let written = |point: &mut Point| {
             let [x, y] = self.plane.sheet().snapped(point);
             *point = self.plane.point(x, y);

@@ -90,7 +90,10 @@ impl Family for GainingFamily {
         is_level(margin) || general::is_sure(margin)
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
+    fn free_run(
+        &self,
+        point: &Point,
+    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
         let FreeRun { label, mut margins } = self.0.free_run(point);
         // Margins of the last phase have all exits.
         let is_whole = |exits: &Vec<Exit>| {

@@ -302,9 +302,8 @@ pub fn itinerary(contact: &Contact, label: &[CollisionEvent]) -> String {
         CollisionEvent::Begins(begins) => Some(*begins),
         _ => None,
     });
-    let fired = label.iter().filter_map(|event| {
-        Some((event.guard()?, *event == CollisionEvent::SlipsOn))
-    });
+    let fired =
+        label.iter().filter_map(|event| Some((event.guard()?, *event == CollisionEvent::SlipsOn)));
     let mut itinerary = String::new();
     for phase in phases(contact, begins, fired) {
         let character = match (phase.regime, phase.side) {

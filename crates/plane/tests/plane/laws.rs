@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use stickslip_model::{BodyPair, Damping, End, Law, Material, Normal, Surface, presets};
-use stickslip_plane::atlas::{BoundaryKind, Frame, Atlas};
+use stickslip_plane::atlas::{Atlas, BoundaryKind, Frame};
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Margin;
 use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};

@@ -8,9 +8,7 @@ use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Contact, InvalidParameter};
 use stickslip_plane::atlas::{Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_plane::stack::{
-    DampingLayer, DampingStack, DampingStackError, StackDocument, stack,
-};
+use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, StackDocument, stack};
 use stickslip_solver::{Hint, Margin, Place};
 
 use crate::windows::frame;

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Frame, Atlas, trace};
+use stickslip_plane::atlas::{Atlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
 
 /// An undamped window.

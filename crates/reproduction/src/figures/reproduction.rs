@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{AtlasError, Frame, Atlas, trace};
+use stickslip_plane::atlas::{Atlas, AtlasError, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::paper::{MOST_RATIO_4, MOST_STIFFNESS, Reading, psi};
 

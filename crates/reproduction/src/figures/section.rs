@@ -110,12 +110,7 @@ impl Section {
 
     /// The section with an atlas as `name`, and with what speaks against the atlas.
     #[must_use]
-    pub(super) fn with_atlas(
-        mut self,
-        name: &str,
-        title: &str,
-        atlas: &Arc<Atlas>,
-    ) -> Self {
+    pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
         if let Some(reason) = atlas.objection() {
             self.objections.push(Objection::Doubtful { file: name.clone(), reason });

@@ -5,7 +5,8 @@ use stickslip_tracer::{Curve, Extremum, Finding, Location, Node, Point, Subdivis
 
 use super::error::DocumentError;
 use super::layout::{
-    BoundaryFields, Document, ExtremalParameter, ExtremumFields, RegionFields, SCHEMA, Switching, VertexFields, WindowFields, in_order,
+    BoundaryFields, Document, ExtremalParameter, ExtremumFields, RegionFields, SCHEMA, Switching,
+    VertexFields, WindowFields, in_order,
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
@@ -131,7 +132,11 @@ fn vertex(
 /// The point at which a boundary turns back, in traced coordinates.
 fn extremum(chart: &Chart, fields: &ExtremumFields) -> Extremum {
     let point = chart.point(fields.kappa, fields.psi);
-    Extremum { curve: fields.boundary, axis: usize::from(fields.of == ExtremalParameter::Psi), point }
+    Extremum {
+        curve: fields.boundary,
+        axis: usize::from(fields.of == ExtremalParameter::Psi),
+        point,
+    }
 }
 
 /// Refuses a list of other regions than the boundaries make.
