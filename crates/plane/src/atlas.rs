@@ -42,7 +42,7 @@ pub use error::{AtlasError, LabelError};
 pub use frame::{Frame, RatioRange};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};
-pub use locate::{Located, Unlocated};
+pub use locate::{Located, ParameterPlace, Unlocated};
 pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
 pub use tracing::{divide, trace};

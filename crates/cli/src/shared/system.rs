@@ -136,6 +136,8 @@ fn require_end(system: &System, end: Option<f64>) -> Result<(), Failure> {
 /// A run of a system.
 #[derive(Debug)]
 pub struct SystemRun {
+    /// The name of the system in titles.
+    pub name: String,
     /// The system.
     pub system: System,
     /// The values of its parameters.
