@@ -12,8 +12,6 @@ from stickslip._tabular import Columns
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stickslip._family_atlases import FamilyAtlas
-    from stickslip.atlases import Atlas
     from stickslip.family_stacks import FamilyStack
     from stickslip.stacks import Stack
 
@@ -59,7 +57,7 @@ def _regions(layer: Any) -> int:
     return len(layer.atlas.regions) if own is None else sum(own.values())
 
 
-def regions(atlas: Atlas | FamilyAtlas) -> Columns:
+def regions(atlas: Any) -> Columns:
     """A row for each region: its itinerary, its area, and a point inside."""
     rows: list[Any] = list(atlas.regions)
     samples = np.array([row.sample for row in rows], dtype=float).reshape(-1, 2)

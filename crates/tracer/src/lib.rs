@@ -91,8 +91,10 @@
 //! - `executor` and `watch`: threads, progress and cancellation, which the caller gives
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
+//! - `draft`: what an atlas has in the places of labels and margins
 //! - `survey`: tracing and verifying in turn, until nothing is missing
-//! - `atlas`: the result, with all that speaks against it
+//! - `atlas` and `doubts`: the result, with all that speaks against it
+//! - `names`: what an atlas calls parameters, labels and margins
 //! - `document`: atlases of any family, written and read back (feature `serde`)
 //! - `stack`: atlases over a third parameter, and where their structure changes
 
@@ -102,11 +104,14 @@ mod cubic;
 mod curve;
 #[cfg(feature = "serde")]
 mod document;
+mod doubts;
+mod draft;
 mod executor;
 mod family;
 mod hybrid;
 mod inverse;
 mod lengths;
+mod names;
 mod options;
 mod polyline;
 mod regions;
@@ -121,12 +126,15 @@ pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
 #[cfg(feature = "serde")]
 pub use document::{Document, DocumentError, SCHEMA};
+pub use doubts::Doubts;
+pub use draft::Draft;
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
 pub use hybrid::{
     DynamicFamily, DynamicFired, DynamicModeOf, DynamicProblem, DynamicSetting, FamilyError,
     HybridFamily, Itinerary, ModeOf, Problem,
 };
+pub use names::{Names, RunNames, Unnamed};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;
@@ -143,7 +151,7 @@ pub use stack::conditions::MeetingKind;
 pub use stack::document::{LayerDocument, StackDocument};
 pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
-pub use survey::{Found, Survey, Surveyor};
+pub use survey::{DraftedOf, Surveyor};
 pub use tracing::branch::Branch;
 pub use tracing::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;

@@ -10,7 +10,7 @@ use stickslip_files::output::file::publish;
 use stickslip_files::output::rows::{LOCATED, LOCATED_RUNS};
 use stickslip_plane::atlas::switch_count;
 use stickslip_solver::Margin;
-use stickslip_tracer::{Atlas, Itinerary, Location, Point};
+use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point};
 
 use crate::error::Failure;
 use crate::shared::files::{require_different, require_one_standard_input};
@@ -50,7 +50,7 @@ pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
     };
     let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
     write(arguments, points, &LOCATED, |contact| {
-        let located = atlas.locate(contact);
+        let located = atlas.locate([contact.kappa(), contact.psi()]);
         let region = located.region.map_err(|why| why.to_string()).map(|region| {
             let itinerary = atlas.itinerary(region);
             [switch_count(itinerary).to_string(), itinerary.to_owned(), region.to_string()]
@@ -61,15 +61,15 @@ pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
 
 /// Locates every point of the input in an atlas of a system of one's own.
 fn runs(arguments: &LocateArguments, found: &RunsAtlas) -> Result<(), Failure> {
-    let RunsAtlas { atlas, axes, guards } = found;
-    let points = |header: &_| TwoColumns::named(header, axes, &LOCATED_RUNS);
+    let RunsAtlas { atlas, names } = found;
+    let points = |header: &_| TwoColumns::named(header, &names.axes, &LOCATED_RUNS);
     write(arguments, points, &LOCATED_RUNS, |&(x, y)| {
         let point = Point::new(x, y);
         let region = region_of(atlas, &point).map(|(region, label)| {
-            let (count, itinerary) = itinerary(label, guards);
-            [count, itinerary, region.to_string()]
+            let count = label.fired().map_or_else(String::new, |fired| fired.len().to_string());
+            [count, names.text(label), region.to_string()]
         });
-        let named = |why| format!("{} = {x}, {} = {y} {why}", axes[0], axes[1]);
+        let named = |why| format!("{} = {x}, {} = {y} {why}", names.axes[0], names.axes[1]);
         (region.map_err(named), atlas.plane.vertical_distance(&point))
     })
 }
@@ -144,23 +144,6 @@ fn region_of<'a>(
             label.map(|label| (region, label)).ok_or("lies in a region that is not known")
         }
     }
-}
-
-/// The number of events and their names.
-fn itinerary(label: &Itinerary, guards: &[String]) -> (String, String) {
-    let Some(fired) = label.fired() else {
-        let word = match label {
-            Itinerary::Accumulates => "accumulates",
-            Itinerary::Fails => "fails",
-            _ => "unfinished",
-        };
-        return (String::new(), word.to_owned());
-    };
-    let name = |&guard: &usize| guards.get(guard).map_or("", String::as_str);
-    let names: Vec<&str> = fired.iter().map(name).collect();
-    let goes_on = matches!(label, Itinerary::Begins(_));
-    let more = if goes_on { "; …" } else { "" };
-    (fired.len().to_string(), format!("{}{more}", names.join("; ")))
 }
 
 /// What `locate --help` says first.

@@ -141,13 +141,10 @@ fn runs(plane: &SystemPlane, arguments: &StackArguments) -> Result<(), Failure> 
         let at = error.source().map_or_else(String::new, |source| format!(": {source}"));
         Failure::Family(format!("{error}{at}"))
     })?;
-    let [x, y] = &plane.axes;
-    let axes = [x.as_str(), y, name];
-    let mut document = stickslip_tracer::StackDocument::new(&made, &options, &plane.name, axes);
-    document.guards = plane.family.rules().to_vec();
+    let document = stickslip_tracer::StackDocument::of_runs(&made, &options, &plane.names, name);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
-        let picture = pictures::stack::draw_runs(&made, &plane.name, [x, y], name);
+        let picture = pictures::stack::draw_runs(&made, &plane.names, name);
         stored.push(plot.write(Ok(picture))?);
     }
     publish(stored)?;
@@ -164,7 +161,7 @@ fn over_third<'a>(
         return Err(Failure::Usage(message.to_owned()));
     };
     let third = place(&plane.system, "--over", &over.name)?;
-    if plane.axes.contains(&over.name) {
+    if plane.names.axes.contains(&over.name) {
         let name = &over.name;
         let message = format!("--over {name}: expected another parameter than --x and --y");
         return Err(Failure::Usage(message));

@@ -128,10 +128,10 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
         stored.push(write_json(file, &gaining::Document::from(gained))?);
     }
     if let Some(plot) = plot {
-        stored.push(plot.write(Ok(pictures::atlas::draw(&verified.atlas)))?);
+        stored.push(plot.write(Ok(pictures::atlas::draw(&verified)))?);
     }
     publish(stored)?;
-    Failure::if_doubtful(out, verified.report.objection())?;
+    Failure::if_doubtful(out, verified.objection())?;
     match (lines, gained) {
         (Some(path), Some(gained)) => Failure::if_doubtful(path, gained.objection()),
         _ => Ok(()),
@@ -171,15 +171,13 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
         surveyor.atlas(&plane.family, &plane.window)
     })?;
     let atlas = atlas.map_err(|error| Failure::Family(error.to_string()))?;
-    let [x, y] = &plane.axes;
-    let mut document = stickslip_tracer::Document::new(&atlas, &options, &plane.name, [x, y]);
-    document.guards = plane.family.rules().to_vec();
+    let document = stickslip_tracer::Document::of_runs(&atlas, &options, &plane.names);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
-        stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.name, [x, y])))?);
+        stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.names)))?);
     }
     publish(stored)?;
-    Failure::if_doubtful(out, atlas.objection())
+    Failure::if_doubtful(out, atlas.doubts(&plane.names).map(|doubts| doubts.objection()))
 }
 
 /// What `trace --help` says first.

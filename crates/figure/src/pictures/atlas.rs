@@ -44,7 +44,7 @@ pub fn draw(atlas: &Atlas) -> Svg {
     let title = title(atlas);
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
     svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
-    let window = &atlas.frame;
+    let window = &atlas.frame();
     let (kappa, psi) = ((window.kappa.low, window.kappa.high), (window.psi.low, window.psi.high));
     let wide = kappa.1 > 10.0 * kappa.0;
     let scales = (if wide { Scale::Logarithmic } else { Scale::Linear }, Scale::Linear);
@@ -114,11 +114,12 @@ fn title(atlas: &Atlas) -> String {
         1 => "1 region with its number of switches".to_owned(),
         count => format!("{count} regions with their numbers of switches"),
     };
-    let reduction = atlas.frame.ratio.map(|ratio| ratio.reduction);
+    let reduction = atlas.ratio.map(|ratio| ratio.reduction);
+    let frame = atlas.frame();
     let (mu, alpha) = (reduction.map(|r| r.mu), reduction.map(|r| r.alpha));
     let parameters = [
-        ("a", Some(atlas.frame.damping)),
-        ("b", Some(atlas.frame.tangential_damping).filter(|damping| *damping != 0.0)),
+        ("a", Some(frame.damping)),
+        ("b", Some(frame.tangential_damping).filter(|damping| *damping != 0.0)),
         ("μ", mu),
         ("α", alpha),
     ];
@@ -132,13 +133,13 @@ fn title(atlas: &Atlas) -> String {
 fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
     let places = atlas.regions.vertices().iter();
     let places = places
-        .map(|vertex| (vertex.kind, panel.place(atlas.chart.parameters(&vertex.point).into())));
+        .map(|vertex| (vertex.kind, panel.place(atlas.plane.parameters(&vertex.point).into())));
     regions::vertices(svg, &places.collect::<Vec<_>>(), legend);
 }
 
 /// Writes the number of switches into each region that has room for it.
 fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
-    let region = |(kappa, psi)| match atlas.regions.locate(&atlas.chart.point(kappa, psi)) {
+    let region = |(kappa, psi)| match atlas.regions.locate(&atlas.plane.point(kappa, psi)) {
         Location::Region(region) => Some(region),
         _ => None,
     };

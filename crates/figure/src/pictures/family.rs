@@ -1,7 +1,7 @@
 //! The picture of an atlas of any family.
 
 use stickslip_solver::{Margin, Place};
-use stickslip_tracer::{Atlas, Itinerary, Location, Point, Unresolved};
+use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point, RunNames, Unresolved};
 
 use super::regions;
 use crate::canvas::Legend;
@@ -46,16 +46,12 @@ pub struct Captions<'a, Label, Margin> {
 
 /// Draws the atlas of a hybrid system, with the number of events in each region.
 #[must_use]
-pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, family: &str, axes: [&str; 2]) -> Svg {
+pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, names: &RunNames) -> Svg {
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
+    let (family, axes) = (&names.family, names.axes());
     let title =
         format!("{family}: {curves} boundaries, {regions} regions with their number of events");
-    let text = |label: &Itinerary| match label {
-        Itinerary::Fires(guards) => guards.len().to_string(),
-        Itinerary::Begins(guards) => format!("{}+", guards.len()),
-        Itinerary::Accumulates => "∞".to_owned(),
-        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
-    };
+    let text = |label: &Itinerary| names.short(label);
     draw(atlas, &Captions { title: &title, axes, kinds: &KINDS, kind: &kind, text: &text })
 }
 

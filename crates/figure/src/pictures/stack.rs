@@ -1,9 +1,9 @@
 //! The picture of a stack: small atlases at several dampings, and a line of births and deaths.
 
 use stickslip_plane::atlas::BoundaryKind;
-use stickslip_plane::stack::{DampingChange, DampingLayer, DampingStack};
+use stickslip_plane::stack::{DampingLayer, DampingStack};
 use stickslip_solver::Margin;
-use stickslip_tracer::{Change, Effect, Itinerary, Layer, Stack};
+use stickslip_tracer::{Change, Effect, Itinerary, Layer, Names, Point, RunNames, Stack};
 
 use super::atlas::{KINDS, boundaries, stroke};
 use super::family::{KINDS as KINDS_OF_RUNS, STROKES, kind};
@@ -77,23 +77,20 @@ struct Turn {
 #[must_use]
 pub fn draw(stack: &DampingStack) -> Svg {
     let has = |kind: BoundaryKind| {
-        let mut atlases = stack.layers.iter().map(|layer| &layer.atlas.atlas);
+        let mut atlases = stack.layers.iter().map(|layer| &layer.atlas);
         atlases.any(|atlas| atlas.regions.curves().iter().any(|curve| curve.margin == kind))
     };
     let kinds = KINDS.into_iter().filter(|(kind, ..)| has(*kind));
     let sheet = |layer: &DampingLayer| {
-        let atlas = &layer.atlas.atlas;
+        let atlas = &layer.atlas;
         let curves =
             boundaries(atlas).into_iter().map(|(kind, points)| (thin(stroke(kind)), points));
         let regions = atlas.regions.regions().len();
         Sheet { value: layer.damping, regions, curves: curves.collect() }
     };
-    let turn = |change: &DampingChange| Turn {
-        between: change.between,
-        meeting: change.meeting.as_ref().map(|it| (it.damping, (it.kappa, it.psi))),
-        effects: change.effects.iter().map(|it| it.effect).collect(),
-    };
-    let window = [stack.frame.kappa, stack.frame.psi].map(|side| (side.low, side.high));
+    let sheet_of_all = stack.plane.sheet();
+    let turn = |change| Turn::of(change, |point| sheet_of_all.snapped(point));
+    let window = sheet_of_all.sides.map(|side| (side.low, side.high));
     let x_scale = if window[0].1 > 10.0 * window[0].0 { Scale::Logarithmic } else { Scale::Linear };
     let drawing = Drawing {
         title: format!("Atlases at {} scaled dampings a", stack.layers.len()),
@@ -110,12 +107,8 @@ pub fn draw(stack: &DampingStack) -> Svg {
 
 /// The same picture of the atlases of a hybrid system over its parameter `over`.
 #[must_use]
-pub fn draw_runs(
-    stack: &Stack<Itinerary, Margin>,
-    family: &str,
-    axes: [&str; 2],
-    over: &str,
-) -> Svg {
+pub fn draw_runs(stack: &Stack<Itinerary, Margin>, names: &RunNames, over: &str) -> Svg {
+    let (family, axes) = (&names.family, names.axes());
     let sheet = |layer: &Layer<Itinerary, Margin>| {
         let plane = &layer.atlas.plane;
         let curves = plane.curves().iter().map(|curve| {
@@ -125,11 +118,7 @@ pub fn draw_runs(
         });
         Sheet { value: layer.value, regions: plane.regions().len(), curves: curves.collect() }
     };
-    let turn = |change: &Change<Itinerary>| Turn {
-        between: change.between,
-        meeting: change.meeting.map(|it| (it.value, (it.point.x, it.point.y))),
-        effects: change.effects.iter().map(Effect::name).collect(),
-    };
+    let turn = |change| Turn::of(change, |point| (*point).into());
     let curves = || stack.layers.iter().flat_map(|layer| layer.atlas.plane.curves());
     let has = |index: usize| curves().any(|curve| kind(&curve.margin) == index);
     let kinds = KINDS_OF_RUNS.into_iter().zip(STROKES).enumerate().filter(|(it, _)| has(*it));
@@ -281,6 +270,15 @@ impl Drawing {
 }
 
 impl Turn {
+    /// A change of atlases with any labels; `place` converts from traced coordinates.
+    fn of<Label>(change: &Change<Label>, place: impl Fn(&Point) -> [f64; 2]) -> Self {
+        Self {
+            between: change.between,
+            meeting: change.meeting.map(|it| (it.value, place(&it.point).into())),
+            effects: change.effects.iter().map(Effect::name).collect(),
+        }
+    }
+
     /// Whether the change does this to a region; the empty name stands for changes without effects.
     fn has(&self, effect: &str) -> bool {
         self.effects.contains(&effect) || (effect.is_empty() && self.effects.is_empty())

@@ -75,7 +75,7 @@ pub fn restitution(largest: f64) -> Svg {
 pub fn traced(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Atlas {
     let range = |(low, high)| Range { low, high };
     let frame = Frame::new(range(kappa), range(psi), damping);
-    trace(frame, frame.tolerances().usual, SILENT).unwrap().atlas
+    trace(frame, frame.tolerances().usual, SILENT).unwrap()
 }
 
 /// Atlases that several tests draw.

@@ -6,7 +6,7 @@ use serde_json::json;
 use stickslip_figure::{number, pictures};
 use stickslip_model::exact;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Atlas, Frame, VerifiedAtlas, trace};
+use stickslip_plane::atlas::{Atlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::{Picture, Study};
 
@@ -31,9 +31,9 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let tolerance = frame.tolerances().usual;
     let verified = Arc::new(trace(frame, tolerance, SILENT)?);
 
-    let distance = distance_from_closed_form(&verified.atlas);
+    let distance = distance_from_closed_form(&verified);
     let report = &verified.report;
-    let map = &verified.atlas.regions;
+    let map = &verified.regions;
     let study = Study {
         name: "boundaries",
         title: TITLE,
@@ -72,15 +72,15 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
                 number(PSI.low, 4),
                 number(PSI.high, 4)
             ),
-            svg: pictures::atlas::draw(&verified.atlas),
+            svg: pictures::atlas::draw(&verified),
         }],
     };
     let title = "the atlas, for stickslip locate";
     Ok(Section::from(study).with_atlas("atlas.json", title, &verified))
 }
 
-fn headline(verified: &VerifiedAtlas) -> String {
-    let (map, report) = (&verified.atlas.regions, &verified.report);
+fn headline(verified: &Atlas) -> String {
+    let (map, report) = (&verified.regions, &verified.report);
     let wrong = match report.mismatches.len() {
         0 => format!("none of {} collisions has other switches than its region", report.tried),
         wrong => {
@@ -97,8 +97,8 @@ fn headline(verified: &VerifiedAtlas) -> String {
 }
 
 /// What is in an atlas and how it was verified, in sentences.
-pub fn summary(verified: &VerifiedAtlas) -> String {
-    let (map, report) = (&verified.atlas.regions, &verified.report);
+pub fn summary(verified: &Atlas) -> String {
+    let (map, report) = (&verified.regions, &verified.report);
     let agree = if report.agrees { "all agree with them" } else { "not all agree with them" };
     format!(
         "{} boundaries, {} vertices and {} regions were traced. Of {} collisions computed at random \
@@ -119,6 +119,6 @@ fn distance_from_closed_form(atlas: &Atlas) -> f64 {
     // The label of its upper side has one phase.
     let uppermost = curves.filter(|curve| curve.sides.iter().any(|side| side.len() == 1));
     let points =
-        uppermost.flat_map(|curve| &curve.nodes).map(|node| atlas.chart.parameters(&node.point));
+        uppermost.flat_map(|curve| &curve.nodes).map(|node| atlas.plane.parameters(&node.point));
     points.fold(0.0, |most, [kappa, psi]| f64::max(most, (psi - exact::top_boundary(kappa)).abs()))
 }

@@ -5,7 +5,7 @@ use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::number;
 use stickslip_figure::pictures::atlas::{boundaries, stroke};
 use stickslip_figure::pictures::map::{self, MapPanel};
-use stickslip_plane::atlas::VerifiedAtlas;
+use stickslip_plane::atlas::Atlas;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
 use stickslip_studies::{Column, Picture, Study, Table};
 
@@ -80,9 +80,9 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
 }
 
 /// The boundaries as lines of the picture.
-fn drawn(verified: &VerifiedAtlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f64)>)> {
+fn drawn(verified: &Atlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f64)>)> {
     let scale = reading.kappa(1.0);
-    let lines = boundaries(&verified.atlas).into_iter().map(|(line, points)| {
+    let lines = boundaries(&verified).into_iter().map(|(line, points)| {
         let points = points.into_iter().map(|(kappa, psi)| (kappa / scale, ratio(psi)));
         (Stroke { width: 1.2, ..stroke(line) }, points.collect())
     });
@@ -108,7 +108,7 @@ fn findings(
     lines: &Lines,
     points: &[LetteredPoint],
     most: [i32; 2],
-    verified: &VerifiedAtlas,
+    verified: &Atlas,
 ) -> Vec<String> {
     let mut findings = vec![format!(
         "The paper has up to {MOST_SWITCHES} switches at {} = {}. With the {} there are at most {} \

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use stickslip_model::Engine;
-use stickslip_plane::atlas::VerifiedAtlas;
+use stickslip_plane::atlas::Atlas;
 use stickslip_plane::sweep::{Failed, FailureCount};
 use stickslip_studies::Study;
 
@@ -45,7 +45,7 @@ pub enum Content {
     /// A map.
     Map(Arc<Sweep>),
     /// An atlas.
-    Atlas(Arc<VerifiedAtlas>),
+    Atlas(Arc<Atlas>),
 }
 
 /// Something that speaks against a result.
@@ -110,14 +110,9 @@ impl Section {
 
     /// The section with an atlas as `name`, and with what speaks against the atlas.
     #[must_use]
-    pub(super) fn with_atlas(
-        mut self,
-        name: &str,
-        title: &str,
-        atlas: &Arc<VerifiedAtlas>,
-    ) -> Self {
+    pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
-        if let Some(reason) = atlas.report.objection() {
+        if let Some(reason) = atlas.objection() {
             self.objections.push(Objection::Doubtful { file: name.clone(), reason });
         }
         self.files.push(DataFile { name, title, content: Content::Atlas(Arc::clone(atlas)) });

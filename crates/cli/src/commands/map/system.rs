@@ -113,7 +113,7 @@ struct Map<'a> {
 impl Map<'_> {
     fn archive(&self, out: &mut OutputFile) -> io::Result<()> {
         let mut archive = Archive::new(out);
-        let [x, y] = &self.plane.axes;
+        let [x, y] = &self.plane.names.axes;
         let (columns, rows) = (self.x.len(), self.y.len());
         let shape = format!("{rows}, {columns}");
         let write = |out: &mut dyn Write, values: &mut dyn Iterator<Item = f64>| {
@@ -158,7 +158,7 @@ impl Map<'_> {
     fn table(&self, path: &std::path::Path) -> Result<StoredFile, Failure> {
         let mut file = CsvFile::create(path)?;
         let mut rows = Rows::default();
-        rows.fields(self.plane.axes.iter().map(String::as_str));
+        rows.fields(self.plane.names.axes.iter().map(String::as_str));
         rows.fields(["event_count", "outcome", "end_mode", "end_time"]);
         rows.fields(self.plane.system.components.iter().map(|it| format!("end_{}", it.name)));
         rows.end();
@@ -202,8 +202,8 @@ impl Map<'_> {
         let (low, high) = (self.plane.window.low, self.plane.window.high);
         let panel = |heading, values| MapPanel {
             heading,
-            horizontal: MapAxis { name: &self.plane.axes[0], range: (low.x, high.x) },
-            vertical: MapAxis { name: &self.plane.axes[1], range: (low.y, high.y) },
+            horizontal: MapAxis { name: &self.plane.names.axes[0], range: (low.x, high.x) },
+            vertical: MapAxis { name: &self.plane.names.axes[1], range: (low.y, high.y) },
             columns,
             rows,
             values,
@@ -219,7 +219,7 @@ impl Map<'_> {
             }
         }
         let size = format!("{} × {} runs", self.x.len(), self.y.len());
-        let title = format!("{}: {size}", self.plane.name);
+        let title = format!("{}: {size}", self.plane.names.family);
         Ok(plot.write(map::draw(&title, &panels))?)
     }
 }
