@@ -10,7 +10,7 @@ use stickslip_figure::markup::plain;
 use stickslip_figure::number;
 use stickslip_reproduction::figures::{Section, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
-use stickslip_studies::{Cell, Column, Study, Table, contact_laws};
+use stickslip_studies::{Cell, Column, Table, contact_laws};
 
 use markup::markup;
 
@@ -61,8 +61,7 @@ pub fn html(sections: &[Section]) -> String {
 }
 
 /// The page of the contact laws.
-pub fn laws(study: Study) -> String {
-    let mut section = Section::from(study);
+pub fn laws(mut section: Section) -> String {
     section.shown.push(contact_laws::LAWS);
     let introduction = &[
         "What the contact laws of particle codes do with two spheres, beside the law of Schwager, \

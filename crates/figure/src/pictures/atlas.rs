@@ -4,13 +4,13 @@
 
 mod closed_forms;
 
+use stickslip_model::text::number;
 use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
 use stickslip_tracer::Location;
 
 use closed_forms::ClosedForms;
 
 use crate::canvas::Legend;
-use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
 use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, TITLE};

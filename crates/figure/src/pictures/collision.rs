@@ -1,9 +1,9 @@
 //! The picture of one collision: forces above, velocity below, against time.
 
+use stickslip_model::text::number;
 use stickslip_model::{Collision, Contact, History, Normal};
 
 use super::course::{self, Course};
-use crate::canvas::number::number;
 use crate::canvas::panel::Edge;
 use crate::canvas::shape::Rectangle;
 use crate::canvas::style::TITLE;

@@ -1,5 +1,6 @@
 //! The picture of a stack: small atlases at several dampings, and a line of births and deaths.
 
+use stickslip_model::text::number;
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_plane::stack::{DampingChange, DampingLayer, DampingStack};
 use stickslip_solver::Margin;
@@ -8,7 +9,6 @@ use stickslip_tracer::{Change, Effect, Itinerary, Layer, Stack};
 use super::atlas::{KINDS, boundaries, stroke};
 use super::family::{KINDS as KINDS_OF_RUNS, STROKES, kind};
 use crate::canvas::Legend;
-use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, LINEAR, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
 use crate::canvas::style::{FRAME, RULE, SMALL, TEXT, TITLE};
