@@ -19,6 +19,7 @@ from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats, _threads
+from stickslip.style import PLACES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,16 +27,6 @@ if TYPE_CHECKING:
     from stickslip.families import HybridFamily
 
 Cancelled: TypeAlias = Callable[[], object]
-
-#: Colours and dashes of boundaries by the place of their margin, as in the picture.
-STYLES = {
-    "end": ("#333333", "-"),
-    "minimum": ("#0072b2", "-"),
-    "maximum": ("#0072b2", "-"),
-    "exit": ("#d55e00", "--"),
-    "start": ("#009e73", "-."),
-    "branch": ("#009e73", "-."),
-}
 
 
 @dataclass(frozen=True)
@@ -353,8 +344,7 @@ class FamilyAtlas(Tabular):
 
             ax = plt.figure(layout="constrained").add_subplot()
         for curve in self.curves:
-            colour, dashes = STYLES[curve.margin.place]
-            style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.0}
+            style = PLACES[curve.margin.place] | {"linewidth": 1.0}
             points = self._native.polyline(curve.id).reshape(-1, 2)
             ax.plot(points[:, 0], points[:, 1], **(style | line))
         (left, right), (bottom, top) = self.window

@@ -21,17 +21,10 @@ from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats, _threads, psi_of_ratio
+from stickslip.style import BOUNDARIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-#: Colours of the kinds of boundaries, which a colour-blind reader can tell apart.
-COLOURS = {"end-of-contact": "#333333", "stick-graze": "#0072b2", "slip-graze": "#d55e00"} | {
-    kind: "#009e73" for kind in ("start-of-contact", "start-of-tail")
-}
-LINES = {"end-of-contact": "-", "stick-graze": "-", "slip-graze": "--"} | {
-    kind: "-." for kind in ("start-of-contact", "start-of-tail")
-}
 
 
 class AtlasWarning(UserWarning):
@@ -227,8 +220,7 @@ class Atlas(Tabular):
         named = set()
         for boundary in self.boundaries:
             kind = boundary.kind
-            style: dict[str, Any] = {"color": COLOURS[kind], "linestyle": LINES[kind]}
-            style |= {"linewidth": 1.0} | line
+            style = BOUNDARIES[kind] | {"linewidth": 1.0} | line
             label = None if kind in named else kind
             named.add(kind)
             ax.plot(boundary.points[:, 0], boundary.points[:, 1], label=label, **style)

@@ -4,7 +4,7 @@ use stickslip_practice::fit::{Course, Fit, Measured};
 
 use crate::canvas::panel::{Edge, LINEAR, Panel};
 use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{INK, RULE, SMALL, TITLE};
+use crate::canvas::style::{INK, MINIMA, RULE, SMALL, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
 const WIDTH: f64 = 900.0;
@@ -17,13 +17,6 @@ const GAP: f64 = 34.0;
 const LABEL: f64 = 20.0;
 const CAP: f64 = 3.0;
 
-/// The best minimum, and those next to it.
-const STROKES: [Stroke; 3] = [
-    Stroke::full("#D55E00", 2.0),
-    Stroke { dashes: "7 4", ..Stroke::full("#0072B2", 1.4) },
-    Stroke { dashes: "2 3", ..Stroke::full("#009E73", 1.4) },
-];
-
 /// Draws the data with their errors, the best fit and the two next minima over the angle, a panel
 /// for each quantity. Vertical lines are where the switches of the best fit change; the numbers of
 /// switches stand between them. `None` without [`Fit::course`].
@@ -34,7 +27,7 @@ pub fn draw(fit: &Fit) -> Option<Svg> {
         fit.residuals.iter().any(|residual| residual.datum.quantity == *quantity)
     };
     let quantities: Vec<_> = Measured::ALL.into_iter().filter(measured).collect();
-    let shown = fit.minima.len().min(STROKES.len());
+    let shown = fit.minima.len().min(MINIMA.len());
     let top = TOP + LINE * shown as f64 + 26.0;
     let height = top + (HEIGHT + GAP) * quantities.len() as f64 + 26.0;
     let mut svg = Svg::new(WIDTH, height, "Fit of measured impacts");
@@ -55,7 +48,7 @@ pub fn draw(fit: &Fit) -> Option<Svg> {
 }
 
 fn legend(svg: &mut Svg, fit: &Fit) {
-    for (index, (minimum, stroke)) in fit.minima.iter().zip(STROKES).enumerate() {
+    for (index, (minimum, stroke)) in fit.minima.iter().zip(MINIMA).enumerate() {
         let y = TOP + LINE * index as f64;
         svg.line((LEFT, y), (LEFT + 30.0, y), stroke);
         let which = if index == 0 { "best fit" } else { "another minimum" };
@@ -93,7 +86,7 @@ fn panel(svg: &mut Svg, fit: &Fit, course: &Course, quantity: Measured, frame: R
         svg.line(panel.place((angle, panel.y.0)), panel.place((angle, panel.y.1)), RULE);
     }
     for curve in curves {
-        if let Some(stroke) = STROKES.get(curve.minimum) {
+        if let Some(stroke) = MINIMA.get(curve.minimum) {
             panel.curve(svg, curve.points.iter().copied(), *stroke);
         }
     }

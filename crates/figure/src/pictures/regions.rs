@@ -4,7 +4,7 @@ use stickslip_tracer::VertexKind;
 
 use crate::canvas::panel::Panel;
 use crate::canvas::shape::Rectangle;
-use crate::canvas::style::{FRAME, INK, SMALL};
+use crate::canvas::style::{self, FRAME, INK, SMALL};
 use crate::canvas::svg::{Anchor, Svg, Words};
 use crate::canvas::{Cells, Legend, place};
 
@@ -20,7 +20,7 @@ pub fn vertices(svg: &mut Svg, places: &[(VertexKind, (f64, f64))], legend: &mut
     let others = [VertexKind::Degenerate, VertexKind::GrazeAtEnd, VertexKind::VanishingPhase];
     for (class, text, kinds, colour) in [
         ("crossings", "crossing", &[VertexKind::Crossing][..], INK),
-        ("other-vertices", "other vertex", &others, "#FFFFFF"),
+        ("other-vertices", "other vertex", &others, style::GROUND),
     ] {
         let square = |svg: &mut Svg, (x, y): (f64, f64)| {
             let (left, top, side) = (x - MARK, y - MARK, 2.0 * MARK);

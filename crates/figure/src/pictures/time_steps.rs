@@ -5,6 +5,7 @@ use stickslip_practice::time_steps::{Errors, Quantity, Row, Status, TimeSteps};
 use super::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use crate::canvas::panel::Scale;
 use crate::canvas::shape::Stroke;
+use crate::canvas::style::{BLUE, GREEN, INK, VERMILION};
 use crate::canvas::svg::Svg;
 
 /// Draws the median and the largest errors over dt/t_c, both axes logarithmic. Crosses mark steps
@@ -45,16 +46,16 @@ fn unstable(result: &TimeSteps) -> Series {
         let errors = Quantity::ALL.into_iter().filter_map(|quantity| row.errors(quantity));
         errors.map(|errors| (1.0 / row.steps_per_contact, errors.worst.error))
     });
-    let mark = Some(Mark { shape: Shape::Cross, colour: "#000000" });
+    let mark = Some(Mark { shape: Shape::Cross, colour: INK });
     let name = "a spring is not resolved".to_owned();
     Series { name, points: points.collect(), line: None, mark }
 }
 
 fn look(quantity: Quantity) -> (&'static str, &'static str, Shape) {
     match quantity {
-        Quantity::TangentialRestitution => ("ε_t", "#D55E00", Shape::Disc),
-        Quantity::NormalRestitution => ("ε_n", "#0072B2", Shape::Square),
-        Quantity::Energy => ("energy", "#009E73", Shape::Ring),
+        Quantity::TangentialRestitution => ("ε_t", VERMILION, Shape::Disc),
+        Quantity::NormalRestitution => ("ε_n", BLUE, Shape::Square),
+        Quantity::Energy => ("energy", GREEN, Shape::Ring),
     }
 }
 

@@ -1,10 +1,10 @@
 //! Figure 1: pure Coulomb sliding.
 
 use serde_json::json;
-use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
 use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::style::FRAME;
 use stickslip_model::coulomb;
 use stickslip_plane::{GridAxis, Range};
 use stickslip_studies::paper::{ALPHA, MU, psi, ratio};

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use serde_json::json;
-use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::style::FRAME;
 use stickslip_model::{BodyPair, Surface};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Range};
 use stickslip_studies::Study;

@@ -2,10 +2,10 @@
 
 use serde_json::json;
 use stickslip_figure::canvas::shape::Stroke;
-use stickslip_figure::number;
-use stickslip_figure::pictures::atlas::{boundaries, stroke};
+use stickslip_figure::pictures::atlas::boundaries;
 use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::{number, style};
 use stickslip_plane::atlas::VerifiedAtlas;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
 use stickslip_studies::{Column, Study, Table};
@@ -85,7 +85,7 @@ fn drawn(verified: &VerifiedAtlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f
     let scale = reading.kappa(1.0);
     let lines = boundaries(&verified.atlas).into_iter().map(|(line, points)| {
         let points = points.into_iter().map(|(kappa, psi)| (kappa / scale, ratio(psi)));
-        (Stroke { width: 1.2, ..stroke(line) }, points.collect())
+        (Stroke { width: 1.2, ..style::boundary(line) }, points.collect())
     });
     lines.collect()
 }

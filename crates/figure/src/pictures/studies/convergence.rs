@@ -8,6 +8,7 @@ use stickslip_studies::convergence::{
 
 use super::Picture;
 use crate::canvas::shape::Stroke;
+use crate::canvas::style::METHODS;
 use crate::canvas::svg::Svg;
 use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
 
@@ -149,11 +150,11 @@ fn marked_line(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::
     chart::Series { name, points, line: Some(stroke), mark }
 }
 
-/// The stroke of a pair. Its dashes let the line of the other pair show where both coincide.
+/// The stroke of a pair.
 fn stroke(scheme: Scheme) -> Stroke {
     match scheme.pair {
-        EmbeddedPair::Dopri5 => Stroke::full("#0072B2", 1.4),
-        EmbeddedPair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },
+        EmbeddedPair::Dopri5 => METHODS[0],
+        EmbeddedPair::Dop853 => METHODS[1],
     }
 }
 

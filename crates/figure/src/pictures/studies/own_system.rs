@@ -4,15 +4,9 @@ use stickslip_solver::EmbeddedPair;
 use stickslip_studies::own_system::{ComparedRun, SystemConvergence};
 
 use super::Picture;
-use crate::canvas::shape::Stroke;
+use crate::canvas::style::METHODS;
 use crate::canvas::svg::Svg;
 use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
-
-/// The methods with their lines.
-const METHODS: [(EmbeddedPair, Stroke); 2] = [
-    (EmbeddedPair::Dopri5, Stroke::full("#0072B2", 1.4)),
-    (EmbeddedPair::Dop853, Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" }),
-];
 
 /// Draws the pictures of a study: errors against work, and against tolerances.
 #[must_use]
@@ -40,7 +34,7 @@ fn chart(
     x: impl Fn(&ComparedRun) -> f64,
 ) -> Svg {
     let mut series = Vec::new();
-    for (method, stroke) in METHODS {
+    for (method, stroke) in [EmbeddedPair::Dopri5, EmbeddedPair::Dop853].into_iter().zip(METHODS) {
         let mut add = |what: &str, shape, error: fn(&ComparedRun) -> f64| {
             let points = study.of(method).map(|row| (x(row), error(row)));
             series.push(Series {

@@ -7,21 +7,22 @@ use stickslip_studies::stiff_springs::{LargestVelocity, MOST_RESOLVED, StiffSpri
 use super::Picture;
 use crate::canvas::panel::Scale;
 use crate::canvas::shape::Stroke;
+use crate::canvas::style::{BLUE, GREEN, INK, PURPLE, SKY, VERMILION};
 use crate::canvas::svg::Svg;
 use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 
-/// Colours of Okabe and Ito, and shapes that distinguish series without colours.
+/// Colours, and shapes that distinguish series without colours.
 const MARKS: [Mark; 4] = [
-    Mark { shape: Shape::Disc, colour: "#0072B2" },
-    Mark { shape: Shape::Ring, colour: "#D55E00" },
-    Mark { shape: Shape::Cross, colour: "#009E73" },
-    Mark { shape: Shape::Square, colour: "#CC79A7" },
+    Mark { shape: Shape::Disc, colour: BLUE },
+    Mark { shape: Shape::Ring, colour: VERMILION },
+    Mark { shape: Shape::Cross, colour: GREEN },
+    Mark { shape: Shape::Square, colour: PURPLE },
 ];
 
-const THEORY: Stroke = Stroke::full("#222222", 1.4);
-const PRINTED: Stroke = Stroke { colour: "#D55E00", width: 1.6, dashes: "7 4" };
-const CORRECTED: Stroke = Stroke { colour: "#CC79A7", width: 1.6, dashes: "2 3" };
-const SINGLE: Stroke = Stroke::full("#56B4E9", 0.9);
+const THEORY: Stroke = Stroke::full(INK, 1.4);
+const PRINTED: Stroke = Stroke { colour: VERMILION, width: 1.6, dashes: "7 4" };
+const CORRECTED: Stroke = Stroke { colour: PURPLE, width: 1.6, dashes: "2 3" };
+const SINGLE: Stroke = Stroke::full(SKY, 0.9);
 
 /// Draws the pictures of a study: final velocities and their bounds, the distance from the limit, F
 /// of the inner problem, and numbers of switches.
