@@ -176,7 +176,12 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
     document.guards = plane.family.rules().to_vec();
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
-        stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.name, [x, y])))?);
+        stored.push(plot.write(Ok(pictures::family::draw_runs(
+            &atlas,
+            &plane.name,
+            [x, y],
+            &document.guards,
+        )))?);
     }
     publish(stored)?;
     Failure::if_doubtful(out, atlas.objection())

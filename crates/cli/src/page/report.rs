@@ -57,7 +57,7 @@ pub fn markdown(sections: &[Section]) -> String {
             append(&mut text, format_args!("- {finding}\n"));
         }
         for picture in &section.pictures {
-            let (name, caption) = (picture.name, &picture.caption);
+            let (name, caption) = (&picture.name, &picture.caption);
             append(&mut text, format_args!("\n![{name}]({name}.svg)\n\n{caption}\n"));
         }
         for table in study.tables.iter().filter(|table| section.shown.contains(&table.name)) {

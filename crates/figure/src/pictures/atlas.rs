@@ -6,7 +6,7 @@ mod closed_forms;
 
 use stickslip_model::text::number;
 use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
-use stickslip_tracer::Location;
+use stickslip_tracer::{Location, Point};
 
 use closed_forms::ClosedForms;
 
@@ -66,6 +66,13 @@ pub fn draw(atlas: &Atlas) -> Svg {
     }
     vertices(&mut svg, atlas, &panel, &mut legend);
     labels(&mut svg, atlas, &panel);
+    let lines: Vec<_> = boundaries.into_iter().map(|(_, points)| points).collect();
+    let parameters = |point: &Point| atlas.chart.parameters(point).into();
+    regions::hints(&mut svg, &panel, &atlas.regions, &lines, parameters, |region| {
+        let itinerary = atlas.itinerary(region);
+        let count = switch_count(itinerary);
+        format!("{itinerary}: {count} {}", if count == 1 { "switch" } else { "switches" })
+    });
     panel.border(&mut svg);
     for edge in [Edge::Bottom, Edge::Left] {
         panel.ticks(&mut svg, edge, true);
@@ -116,12 +123,15 @@ fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
     regions::vertices(svg, &places.collect::<Vec<_>>(), legend);
 }
 
-/// Writes the number of switches into each region that has room for it.
+/// Writes the number of switches into each region, or beside it.
 fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
     let region = |(kappa, psi)| match atlas.regions.locate(&atlas.chart.point(kappa, psi)) {
         Location::Region(region) => Some(region),
         _ => None,
     };
     let text = |region: usize| switch_count(atlas.itinerary(region)).to_string();
-    regions::labels(svg, panel, region, text);
+    let samples = atlas.regions.regions().iter();
+    let samples: Vec<_> =
+        samples.map(|region| atlas.chart.parameters(&region.sample).into()).collect();
+    regions::labels(svg, panel, region, &samples, text);
 }

@@ -31,7 +31,7 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
     svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
     let course = Course::new(collision, history, FORCES.width);
-    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(&course), "F_t/μ, w");
+    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(&course));
 
     let forces = course.forces(&mut svg, FORCES, course.largest_force());
     forces.ticks(&mut svg, Edge::Left, true);

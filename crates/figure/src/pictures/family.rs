@@ -32,11 +32,19 @@ pub struct Captions<'a, Label, Margin> {
     pub kind: &'a dyn Fn(&Margin) -> usize,
     /// A short text for the regions with a label.
     pub text: &'a dyn Fn(&Label) -> String,
+    /// The text that browsers show where the pointer is over such a region.
+    pub hint: &'a dyn Fn(&Label) -> String,
 }
 
-/// Draws the atlas of a hybrid system, with the number of events in each region.
+/// Draws the atlas of a hybrid system, with the number of events in each region. `guards` are the
+/// names of the guards; without them, hints have their numbers.
 #[must_use]
-pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, family: &str, axes: [&str; 2]) -> Svg {
+pub fn draw_runs(
+    atlas: &Atlas<Itinerary, Margin>,
+    family: &str,
+    axes: [&str; 2],
+    guards: &[String],
+) -> Svg {
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
     let title =
         format!("{family}: {curves} boundaries, {regions} regions with their number of events");
@@ -47,7 +55,18 @@ pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, family: &str, axes: [&str; 2]
         Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
     };
     let kinds = &PLACES.map(|(_, words, _)| words);
-    draw(atlas, &Captions { title: &title, axes, kinds, kind: &style::place, text: &text })
+    let name = |guard: &usize| guards.get(*guard).cloned().unwrap_or_else(|| guard.to_string());
+    let names = |guards: &[usize]| guards.iter().map(name).collect::<Vec<_>>().join(", ");
+    let hint = |label: &Itinerary| match label {
+        Itinerary::Fires(guards) if guards.is_empty() => "no events".to_owned(),
+        Itinerary::Fires(guards) => names(guards),
+        Itinerary::Begins(guards) => format!("{}, …", names(guards)),
+        Itinerary::Accumulates => "events accumulate".to_owned(),
+        Itinerary::Unfinished => "too many steps".to_owned(),
+        Itinerary::Fails => "the run fails".to_owned(),
+    };
+    let (kind, text, hint) = (&style::place, &text, &hint);
+    draw(atlas, &Captions { title: &title, axes, kinds, kind, text, hint })
 }
 
 /// Draws an atlas in its coordinates, with linear axes. Regions in doubt have the text `?`.
@@ -88,12 +107,20 @@ pub fn draw<Label, Margin>(
         Location::Region(region) => Some(region),
         _ => None,
     };
-    regions::labels(&mut svg, &panel, region, |region| {
+    let words = |region: usize, of: &dyn Fn(&Label) -> String, unknown: &str| {
         let label = atlas.plane.regions()[region].label.as_ref();
-        match label.filter(|_| !atlas.is_doubtful(region)) {
-            Some(label) => (captions.text)(label),
-            None => "?".to_owned(),
-        }
+        label.filter(|_| !atlas.is_doubtful(region)).map_or_else(|| unknown.to_owned(), of)
+    };
+    let samples = atlas.plane.regions().iter().map(|region| (region.sample.x, region.sample.y));
+    let samples: Vec<_> = samples.collect();
+    regions::labels(&mut svg, &panel, region, &samples, |it| words(it, captions.text, "?"));
+    let lines = atlas.plane.curves().iter().map(|curve| {
+        curve.polyline(&extent).iter().map(|point| (point.x, point.y)).collect::<Vec<_>>()
+    });
+    let value = |point: &Point| (point.x, point.y);
+    let lines: Vec<_> = lines.collect();
+    regions::hints(&mut svg, &panel, &atlas.plane, &lines, value, |it| {
+        words(it, captions.hint, "in doubt")
     });
     panel.border(&mut svg);
     for edge in [Edge::Bottom, Edge::Left] {

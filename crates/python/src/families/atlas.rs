@@ -151,8 +151,8 @@ impl FamilyAtlas {
 
     /// The picture as SVG.
     fn picture(&self, py: Python<'_>) -> String {
-        let Description(family, [x, y], _) = &self.description;
-        py.detach(|| draw_runs(&self.atlas, family, [x, y]).document())
+        let Description(family, [x, y], guards) = &self.description;
+        py.detach(|| draw_runs(&self.atlas, family, [x, y], guards).document())
     }
 
     /// The region of each point and its distance from the nearest curve in y: −1 on a curve within
