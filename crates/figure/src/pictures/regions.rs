@@ -182,7 +182,7 @@ impl Raster {
         taken: &[Rectangle],
     ) -> Option<(f64, f64)> {
         /// Distances from the point in pixels, and directions.
-        const DISTANCES: std::ops::Range<u32> = 14..90;
+        const DISTANCES: std::ops::Range<u32> = 18..90;
         const DIRECTIONS: u32 = 24;
         DISTANCES.step_by(4).find_map(|distance| {
             (0..DIRECTIONS).find_map(|direction| {
@@ -216,8 +216,9 @@ impl Raster {
             return false;
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let index =
-            |length: f64, cell: f64, most: u16| (length / cell) as usize % usize::from(most);
+        let index = |length: f64, cell: f64, most: u16| {
+            ((length / cell) as usize).min(usize::from(most) - 1)
+        };
         let columns = index(at.left - frame.left, self.cell.0, COLUMNS)
             ..=index(at.right() - frame.left - 1e-9, self.cell.0, COLUMNS);
         let mut rows = index(at.top - frame.top, self.cell.1, ROWS)
