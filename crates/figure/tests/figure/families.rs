@@ -46,9 +46,9 @@ fn an_atlas_of_any_family_has_a_picture() {
     let mut labels = texts_in(&svg, "regions");
     labels.sort();
     assert_eq!(labels, ["0", "1", "10", "11"]);
-    let mut hints = hints(&svg);
-    hints.sort();
-    assert_eq!(hints, ["shape 0", "shape 1", "shape 10", "shape 11"]);
+    let mut shown = hints(&svg);
+    shown.sort();
+    assert_eq!(shown, ["shape 0", "shape 1", "shape 10", "shape 11"]);
 
     // Nothing is known of a survey that was cancelled.
     let watch = Watch::SILENT.cancelled_by(&|| true);
