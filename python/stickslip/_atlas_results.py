@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip._axes import COLOURS, GREY, MARKERS, legend, one
+from stickslip._axes import MARKERS, legend, one
 from stickslip._tabular import Columns
+from stickslip.style import COLOURS, RULE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +32,7 @@ def stack(
     for change in found.changes:
         low, high = change.between
         dash = ":" if change.doubtful else "-"
-        ax.axvline((low + high) / 2, color=GREY, linewidth=0.8, linestyle=dash, zorder=0)
+        ax.axvline((low + high) / 2, color=RULE, linewidth=0.8, linestyle=dash, zorder=0)
     for number, effect in enumerate(_EFFECTS):
         where = [
             sum(change.between) / 2

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Cancelled: TypeAlias = Callable[[], object]
 
+
 @dataclass(frozen=True)
 class Itinerary:
     """What a run does: the label of a region."""

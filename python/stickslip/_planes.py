@@ -13,31 +13,15 @@ from stickslip import _atlas_results, _native
 from stickslip._axes import one
 from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats
+from stickslip.style import BOUNDARIES, PLACES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Native = TypeVar("Native", _native.Atlas, _native.FamilyAtlas)
 
-_END, _GRAZE, _OTHER, _START = (
-    {"color": colour, "linestyle": dashes, "linewidth": 1.0}
-    for colour, dashes in [("#333333", "-"), ("#0072b2", "-"), ("#d55e00", "--"), ("#009e73", "-.")]
-)
-#: How boundaries are drawn, by their kind or by the place of their margin, as in the pictures of
-#: the program. A colour-blind reader can tell the colours apart.
-_STYLES: dict[str, dict[str, Any]] = {
-    "end-of-contact": _END,
-    "stick-graze": _GRAZE,
-    "slip-graze": _OTHER,
-    "start-of-contact": _START,
-    "start-of-tail": _START,
-    "end": _END,
-    "minimum": _GRAZE,
-    "maximum": _GRAZE,
-    "exit": _OTHER,
-    "start": _START,
-    "branch": _START,
-}
+#: How boundaries are drawn, by their kind or by the place of their margin.
+_STYLES = BOUNDARIES | PLACES
 
 
 class Plane(Tabular, Generic[Native]):
@@ -111,7 +95,7 @@ class Plane(Tabular, Generic[Native]):
         for kind, points in self._lines():
             name = None if kind in named else kind
             named.add(kind)
-            ax.plot(points[:, 0], points[:, 1], label=name, **(_STYLES[kind] | line))
+            ax.plot(points[:, 0], points[:, 1], label=name, **(_STYLES[kind] | {"linewidth": 1.0} | line))
         for text, part, sample in self._labels() if labels else ():
             if part > self._ROOM:
                 ax.annotate(text, sample, ha="center", va="center")

@@ -20,6 +20,7 @@ from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
 from stickslip.collisions import Floats, _threads, psi_of_ratio
 
+
 class AtlasWarning(UserWarning):
     """An atlas is complete, but may be wrong."""
 

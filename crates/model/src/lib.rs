@@ -18,6 +18,7 @@
 //! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
 //! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
 //! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |
+//! | | [`text`]: numbers in sentences and pictures |
 //!
 //! With the feature `serde`, results serialise themselves, and `document` says what computed them.
 //!
@@ -39,6 +40,7 @@ mod limits;
 #[cfg(feature = "serde")]
 mod serialize;
 mod spheres;
+pub mod text;
 
 pub use engines::history::{History, Moment, PhaseHistory, Snapshot};
 #[doc(hidden)]

@@ -8,7 +8,8 @@ use stickslip_expression::{By, Recording, Runnable, SensitivityError, System};
 use stickslip_plane::progress::Report;
 use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 
-use stickslip_studies::own_system;
+use stickslip_figure::pictures::studies as pictures;
+use stickslip_studies::{StudyError, own_system};
 
 use crate::background::{Signals, watched};
 use crate::failure::{bad_input, failed};
@@ -215,7 +216,8 @@ impl FormulaSystem {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let settings = own_system::Settings { name, system: self.0.clone(), runnable, end };
         studies::run(py, threads, progress.as_ref(), move |report| {
-            own_system::run(&settings, report)
+            let measured = own_system::run(&settings, report)?;
+            Ok::<_, StudyError>((measured.study(), pictures::own_system::draw(&measured)))
         })
     }
 }

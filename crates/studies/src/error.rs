@@ -1,6 +1,5 @@
 //! What can go wrong in a study.
 
-use stickslip_figure::FigureError;
 use stickslip_model::exact::ExactError;
 use stickslip_model::{Contact, EngineError, InvalidParameter, OtherLaw};
 
@@ -19,9 +18,6 @@ pub enum StudyError {
     /// The run of a system fails.
     #[error("the run failed: {0}")]
     Run(String),
-    /// A picture cannot be drawn.
-    #[error(transparent)]
-    Picture(#[from] FigureError),
     /// The settings of a study of stiff springs are out of range.
     #[error(transparent)]
     StiffSprings(#[from] InvalidStiffSprings),

@@ -4,6 +4,7 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::source::{is_standard_input, shown};
 use stickslip_files::input::{bodies, law, measured, number, range};
@@ -115,7 +116,7 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
     plot.map_or(Ok(()), PictureFile::probe)?;
     let result = arguments.threads.with_steps(|report| fit::run(&settings, report))??;
     if let Some(plot) = plot {
-        let picture = result.picture().ok_or_else(|| {
+        let picture = pictures::fit::draw(&result).ok_or_else(|| {
             let expected = "expected data at an angle above 0";
             Failure::Usage(format!("--plot has nothing to draw; {expected}"))
         })?;

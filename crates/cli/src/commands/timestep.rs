@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
+use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::range::{self, OneOrRange};
 use stickslip_files::input::source::shown;
@@ -132,7 +133,7 @@ pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
     plot.map_or(Ok(()), PictureFile::probe)?;
     let result = arguments.threads.with_steps(|report| time_steps::run(&settings, report))??;
     if let Some(plot) = plot {
-        publish([plot.write(Ok(result.picture()))?])?;
+        publish([plot.write(Ok(pictures::time_steps::draw(&result)))?])?;
     }
     print(|out| match arguments.format {
         Format::Json => json::lines(out, &Document::new(&result, seconds, wanted)),

@@ -4,16 +4,16 @@
 
 mod closed_forms;
 
+use stickslip_model::text::number;
 use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
-use stickslip_tracer::Location;
+use stickslip_tracer::{Location, Point};
 
 use closed_forms::ClosedForms;
 
 use crate::canvas::Legend;
-use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, Panel, Scale};
-use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, TITLE};
+use crate::canvas::shape::Rectangle;
+use crate::canvas::style::{self, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 use crate::pictures::regions;
 
@@ -26,15 +26,6 @@ const LEGEND_AT: (f64, f64) = (72.0, 50.0);
 const LINE: f64 = 18.0;
 /// Width of the key of a line in the legend.
 const KEY: f64 = 28.0;
-
-/// All kinds of boundaries in the order of the legend, with their names.
-pub(super) const KINDS: [(BoundaryKind, &str, &str); 5] = [
-    (BoundaryKind::EndOfContact, "end-of-contact", "switch at the end of contact"),
-    (BoundaryKind::StickGraze, "stick-graze", "graze while sticking"),
-    (BoundaryKind::SlipGraze, "slip-graze", "graze while sliding"),
-    (BoundaryKind::StartOfContact, "start-of-contact", "slip from the start"),
-    (BoundaryKind::StartOfTail, "start-of-tail", "slip from where the force attracts"),
-];
 
 /// Draws `atlas`.
 ///
@@ -59,22 +50,29 @@ pub fn draw(atlas: &Atlas) -> Svg {
 
     let boundaries = boundaries(atlas);
     let mut legend = Legend::new(LEGEND_AT);
-    for (kind, class, text) in KINDS {
+    for (kind, class, text) in style::KINDS {
         let mut lines = boundaries.iter().filter(|boundary| boundary.0 == kind).peekable();
         if lines.peek().is_some() {
             legend.entry(&mut svg, KEY, text, |svg, key| {
                 let y = key.top + 0.5 * key.height;
-                svg.line((key.left, y), (key.right(), y), stroke(kind));
+                svg.line((key.left, y), (key.right(), y), style::boundary(kind));
             });
         }
         svg.begin_group(class);
         for (_, points) in lines {
-            panel.curve(&mut svg, points.iter().copied(), stroke(kind));
+            panel.curve(&mut svg, points.iter().copied(), style::boundary(kind));
         }
         svg.end_group();
     }
     vertices(&mut svg, atlas, &panel, &mut legend);
     labels(&mut svg, atlas, &panel);
+    let lines: Vec<_> = boundaries.into_iter().map(|(_, points)| points).collect();
+    let parameters = |point: &Point| atlas.chart.parameters(point).into();
+    regions::hints(&mut svg, &panel, &atlas.regions, &lines, parameters, |region| {
+        let itinerary = atlas.itinerary(region);
+        let count = switch_count(itinerary);
+        format!("{itinerary}: {count} {}", if count == 1 { "switch" } else { "switches" })
+    });
     panel.border(&mut svg);
     for edge in [Edge::Bottom, Edge::Left] {
         panel.ticks(&mut svg, edge, true);
@@ -91,17 +89,6 @@ pub fn boundaries(atlas: &Atlas) -> Vec<(BoundaryKind, Vec<(f64, f64)>)> {
     let curves = atlas.regions.curves().iter();
     let points = |line: Vec<[f64; 2]>| line.into_iter().map(Into::into).collect();
     curves.zip(atlas.polylines()).map(|(curve, line)| (curve.margin, points(line))).collect()
-}
-
-/// The stroke of the boundaries of a kind.
-#[must_use]
-pub fn stroke(kind: BoundaryKind) -> Stroke {
-    match kind {
-        BoundaryKind::EndOfContact => BOUNDARY_END,
-        BoundaryKind::StickGraze => BOUNDARY_STICK,
-        BoundaryKind::SlipGraze => BOUNDARY_SLIP,
-        BoundaryKind::StartOfContact | BoundaryKind::StartOfTail => BOUNDARY_START,
-    }
 }
 
 /// The size of an atlas, and the parameters that all its collisions have in common.
@@ -137,12 +124,15 @@ fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
     regions::vertices(svg, &places.collect::<Vec<_>>(), legend);
 }
 
-/// Writes the number of switches into each region that has room for it.
+/// Writes the number of switches into each region, or beside it.
 fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
     let region = |(kappa, psi)| match atlas.regions.locate(&atlas.plane.point(kappa, psi)) {
         Location::Region(region) => Some(region),
         _ => None,
     };
     let text = |region: usize| switch_count(atlas.itinerary(region)).to_string();
-    regions::labels(svg, panel, region, text);
+    let samples = atlas.regions.regions().iter();
+    let samples: Vec<_> =
+        samples.map(|region| atlas.chart.parameters(&region.sample).into()).collect();
+    regions::labels(svg, panel, region, &samples, text);
 }

@@ -1,9 +1,9 @@
 //! The picture of one collision: forces above, velocity below, against time.
 
+use stickslip_model::text::number;
 use stickslip_model::{Collision, Contact, History, Normal};
 
 use super::course::{self, Course};
-use crate::canvas::number::number;
 use crate::canvas::panel::Edge;
 use crate::canvas::shape::Rectangle;
 use crate::canvas::style::TITLE;
@@ -31,7 +31,7 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
     svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
     let course = Course::new(collision, history, FORCES.width);
-    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(&course), "F_t/μ, w");
+    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(&course));
 
     let forces = course.forces(&mut svg, FORCES, course.largest_force());
     forces.ticks(&mut svg, Edge::Left, true);

@@ -125,10 +125,9 @@ fn padded((low, high): (f64, f64)) -> (f64, f64) {
     (low - pad, high + pad)
 }
 
-/// Draws the legend of `courses` at a place; `tangential` names the tangential lines.
-///
-/// It names the phases that occur, and switches if there are any.
-pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>], tangential: &str) {
+/// Draws the legend of the forces of `courses` at a place. It names the phases that occur, and
+/// switches if there are any. The only line of a velocity is named by its axis.
+pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>]) {
     let mut legend = Legend::new(at);
     let phases = || courses.iter().flat_map(|course| course.history.phases());
     for (text, regime, side, colour) in [
@@ -153,7 +152,7 @@ pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>], tangential:
             svg.line((x, y - 0.5 * MARK), (x, y + 0.5 * MARK), FRAME);
         });
     }
-    for (text, stroke) in [("F_n", NORMAL), ("−F_n", NORMAL_MIRRORED), (tangential, TANGENTIAL)] {
+    for (text, stroke) in [("F_n", NORMAL), ("−F_n", NORMAL_MIRRORED), ("F_t/μ", TANGENTIAL)] {
         legend.entry(svg, KEY, text, |svg, key| {
             let y = key.top + 0.5 * key.height;
             svg.line((key.left, y), (key.right(), y), stroke);

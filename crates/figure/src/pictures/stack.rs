@@ -1,17 +1,19 @@
 //! The picture of a stack: small atlases at several dampings, and a line of births and deaths.
 
+use stickslip_model::text::number;
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_plane::stack::{DampingLayer, DampingStack};
 use stickslip_solver::Margin;
 use stickslip_tracer::{Change, Effect, Itinerary, Layer, Names, Point, RunNames, Stack};
 
-use super::atlas::{KINDS, boundaries, stroke};
-use super::family::{KINDS as KINDS_OF_RUNS, STROKES, kind};
+use super::atlas::boundaries;
 use crate::canvas::Legend;
-use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, LINEAR, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{FRAME, RULE, SMALL, TEXT, TITLE};
+use crate::canvas::style::{
+    self, FRAME, GREEN, INK, KINDS, ORANGE, PLACES, PURPLE, RULE, SKY, SMALL, TEXT, TITLE,
+    VERMILION,
+};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
 const COLUMNS: usize = 4;
@@ -29,16 +31,16 @@ const LINE_LEFT: f64 = 190.0;
 const ROW: f64 = 24.0;
 const ABOVE: f64 = 86.0;
 /// The ring around a place where regions change.
-const RING: (f64, Stroke) = (4.0, Stroke::full("#CC79A7", 1.6));
+const RING: (f64, Stroke) = (4.0, Stroke::full(PURPLE, 1.6));
 
 /// What becomes of regions: the name in data, the words in the picture, and the colour. The rows
 /// tell them apart as well, and the colours are those of Okabe and Ito.
 const EFFECTS: [(&str, &str, &str); 5] = [
-    ("born", "a region is born", "#009E73"),
-    ("splits", "a region splits", "#56B4E9"),
-    ("merge", "regions merge", "#E69F00"),
-    ("dies", "a region dies", "#D55E00"),
-    ("", "neighbours change", "#222222"),
+    ("born", "a region is born", GREEN),
+    ("splits", "a region splits", SKY),
+    ("merge", "regions merge", ORANGE),
+    ("dies", "a region dies", VERMILION),
+    ("", "neighbours change", INK),
 ];
 
 /// What is drawn, whoever has traced it.
@@ -83,8 +85,9 @@ pub fn draw(stack: &DampingStack) -> Svg {
     let kinds = KINDS.into_iter().filter(|(kind, ..)| has(*kind));
     let sheet = |layer: &DampingLayer| {
         let atlas = &layer.atlas;
-        let curves =
-            boundaries(atlas).into_iter().map(|(kind, points)| (thin(stroke(kind)), points));
+        let curves = boundaries(atlas)
+            .into_iter()
+            .map(|(kind, points)| (thin(style::boundary(kind)), points));
         let regions = atlas.regions.regions().len();
         Sheet { value: layer.damping, regions, curves: curves.collect() }
     };
@@ -98,7 +101,7 @@ pub fn draw(stack: &DampingStack) -> Svg {
         over: "a".to_owned(),
         window,
         scales: (x_scale, Scale::Linear),
-        kinds: kinds.map(|(kind, _, text)| (text, thin(stroke(kind)))).collect(),
+        kinds: kinds.map(|(kind, _, text)| (text, thin(style::boundary(kind)))).collect(),
         sheets: stack.layers.iter().map(sheet).collect(),
         turns: stack.changes.iter().map(turn).collect(),
     };
@@ -114,14 +117,14 @@ pub fn draw_runs(stack: &Stack<Itinerary, Margin>, names: &RunNames, over: &str)
         let curves = plane.curves().iter().map(|curve| {
             let points = curve.polyline(&plane.window().extent());
             let points = points.iter().map(|point| (point.x, point.y)).collect();
-            (thin(STROKES[kind(&curve.margin)]), points)
+            (thin(PLACES[style::place(&curve.margin)].2), points)
         });
         Sheet { value: layer.value, regions: plane.regions().len(), curves: curves.collect() }
     };
     let turn = |change| Turn::of(change, |point| (*point).into());
     let curves = || stack.layers.iter().flat_map(|layer| layer.atlas.plane.curves());
-    let has = |index: usize| curves().any(|curve| kind(&curve.margin) == index);
-    let kinds = KINDS_OF_RUNS.into_iter().zip(STROKES).enumerate().filter(|(it, _)| has(*it));
+    let has = |index: usize| curves().any(|curve| style::place(&curve.margin) == index);
+    let kinds = PLACES.into_iter().enumerate().filter(|(index, _)| has(*index));
     let window = stack.layers.first().map(|layer| *layer.atlas.plane.window());
     let window =
         window.map_or([(0.0, 1.0); 2], |it| [(it.low.x, it.high.x), (it.low.y, it.high.y)]);
@@ -131,7 +134,7 @@ pub fn draw_runs(stack: &Stack<Itinerary, Margin>, names: &RunNames, over: &str)
         over: over.to_owned(),
         window,
         scales: LINEAR,
-        kinds: kinds.map(|(_, (text, stroke))| (text, thin(stroke))).collect(),
+        kinds: kinds.map(|(_, (_, text, stroke))| (text, thin(stroke))).collect(),
         sheets: stack.layers.iter().map(sheet).collect(),
         turns: stack.changes.iter().map(turn).collect(),
     };

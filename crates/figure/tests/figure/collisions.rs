@@ -9,15 +9,15 @@ fn legend(texts: &[String], count: usize) -> Vec<&str> {
 #[test]
 fn the_legend_names_the_phases_that_occur() {
     let svg = collision(63.0, 0.5, 0.0);
-    let all = ["slip +", "stick", "slip −", "switch", "Fn", "−Fn", "Ft/μ, w"];
+    let all = ["slip +", "stick", "slip −", "switch", "Fn", "−Fn", "Ft/μ"];
     assert_eq!(legend(&texts(&svg), 7), all);
     assert_eq!(count_in(&svg, "switches", "line"), 2 * 6);
     // Itinerary +o+: the other side does not occur.
-    let without_minus = ["slip +", "stick", "switch", "Fn", "−Fn", "Ft/μ, w"];
+    let without_minus = ["slip +", "stick", "switch", "Fn", "−Fn", "Ft/μ"];
     assert_eq!(legend(&texts(&collision(18.0, 1e-7, 0.0)), 6), without_minus);
     // A contact that only slides has no switch.
     let sliding = collision(5.0, 1e6, 0.0);
-    assert_eq!(legend(&texts(&sliding), 4), ["slip +", "Fn", "−Fn", "Ft/μ, w"]);
+    assert_eq!(legend(&texts(&sliding), 4), ["slip +", "Fn", "−Fn", "Ft/μ"]);
     assert_eq!(count_in(&sliding, "switches", "line"), 0);
 }
 

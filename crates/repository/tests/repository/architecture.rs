@@ -17,8 +17,8 @@ const LAYERS: [&[&str]; 11] = [
     &["stickslip-exact", "stickslip-expression"],
     &["stickslip-model"],
     &["stickslip-plane"],
-    &["stickslip-explorer", "stickslip-figure"],
-    &["stickslip-practice", "stickslip-studies"],
+    &["stickslip-explorer", "stickslip-practice", "stickslip-studies"],
+    &["stickslip-figure"],
     &["stickslip-files", "stickslip-reproduction"],
     &["stickslip", "stickslip-cli", "stickslip-python"],
     // Tests, benches and long batteries alone.

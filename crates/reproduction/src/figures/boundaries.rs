@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use serde_json::json;
-use stickslip_figure::{number, pictures};
+use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::{number, pictures as drawn};
 use stickslip_model::exact;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{Atlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_studies::{Picture, Study};
+use stickslip_studies::Study;
 
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -34,6 +35,20 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let distance = distance_from_closed_form(&verified);
     let report = &verified.report;
     let map = &verified.regions;
+    let pictures = vec![Picture {
+        name: "boundaries".to_owned(),
+        caption: format!(
+            "Every boundary on which the switches of an undamped collision change, for κ from {} \
+             to {} and ψ from {} to {}, which is enough for every μ and α. The closed form of the \
+             uppermost boundary is drawn beneath it. The marks at the bottom are the stiffnesses at \
+             which boundaries end as ψ vanishes.",
+            number(KAPPA.low, 4),
+            number(KAPPA.high, 4),
+            number(PSI.low, 4),
+            number(PSI.high, 4)
+        ),
+        svg: drawn::atlas::draw(&verified),
+    }];
     let study = Study {
         name: "boundaries",
         title: TITLE,
@@ -60,23 +75,9 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
             "distance_from_closed_form": distance,
         }),
         tables: Vec::new(),
-        pictures: vec![Picture {
-            name: "boundaries",
-            caption: format!(
-                "Every boundary on which the switches of an undamped collision change, for κ from {} \
-                 to {} and ψ from {} to {}, which is enough for every μ and α. The closed form of the \
-                 uppermost boundary is drawn beneath it. The marks at the bottom are the stiffnesses at \
-                 which boundaries end as ψ vanishes.",
-                number(KAPPA.low, 4),
-                number(KAPPA.high, 4),
-                number(PSI.low, 4),
-                number(PSI.high, 4)
-            ),
-            svg: pictures::atlas::draw(&verified),
-        }],
     };
     let title = "the atlas, for stickslip locate";
-    Ok(Section::from(study).with_atlas("atlas.json", title, &verified))
+    Ok(Section::new(study, pictures).with_atlas("atlas.json", title, &verified))
 }
 
 fn headline(verified: &Atlas) -> String {

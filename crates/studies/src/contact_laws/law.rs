@@ -10,7 +10,9 @@ use super::settings::{Named, Settings};
 use crate::error::{CollisionFailure, StudyError};
 
 /// What was computed of one law.
+#[derive(Clone, Debug)]
 pub struct LawOnPlane {
+    /// The law with its names.
     pub named: Named,
     /// ε_t, row by row from the lower edge.
     pub eps_t: Vec<f64>,
@@ -18,15 +20,16 @@ pub struct LawOnPlane {
     pub difference: Vec<f64>,
     /// The numbers of switches.
     pub switches: Vec<i32>,
-    /// What the collisions have in common, without damping and with it.
+    /// What the collisions have in common without damping.
     pub undamped: Kinds,
+    /// What the collisions have in common with damping.
     pub damped: Kinds,
     /// The standard impact.
     pub standard: (Collision, History),
 }
 
 /// The kinds of collisions of a law in the window.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Kinds {
     /// The characters of their first phases.
     pub starts: BTreeSet<char>,
@@ -34,14 +37,14 @@ pub struct Kinds {
     pub parities: BTreeSet<usize>,
     /// The largest |ε_t|, with its κ and ψ.
     pub largest: (f64, [f64; 2]),
-    /// How many collisions there are, and how many of them have more tangential kinetic energy
-    /// after the contact than before.
+    /// How many collisions there are.
     pub collisions: usize,
+    /// How many of them have more tangential kinetic energy after the contact than before.
     pub gaining: usize,
 }
 
 impl LawOnPlane {
-    pub fn new(settings: &Settings, named: &Named) -> Result<Self, StudyError> {
+    pub(super) fn new(settings: &Settings, named: &Named) -> Result<Self, StudyError> {
         let (mut undamped, mut damped) = (Kinds::default(), Kinds::default());
         let points = settings.cells * settings.cells;
         let [mut eps_t, mut difference] = [const { Vec::new() }; 2];
@@ -75,11 +78,12 @@ impl LawOnPlane {
     }
 
     /// What becomes of the energy in the spring.
+    #[must_use]
     pub fn spring(&self) -> SpringEnergy {
         self.named.law.spring_energy()
     }
 
-    pub fn json(&self) -> Value {
+    pub(super) fn json(&self) -> Value {
         json!({
             "names": self.named.names,
             "law": self.named.law,
@@ -112,6 +116,7 @@ impl Kinds {
     }
 
     /// The parity of the numbers of switches.
+    #[must_use]
     pub fn parity(&self) -> &'static str {
         match (self.parities.contains(&0), self.parities.contains(&1)) {
             (true, false) => "even",
@@ -121,6 +126,7 @@ impl Kinds {
     }
 
     /// The regimes of the first phases.
+    #[must_use]
     pub fn starts(&self) -> String {
         let names = self.starts.iter().map(|first| match first {
             'o' => "stick",
