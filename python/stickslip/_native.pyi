@@ -142,6 +142,9 @@ class BodyPair:
     def contacts(
         self, normal: _Floats, tangential: _Floats
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
+    def impacts(
+        self, velocities: tuple[_Floats, _Floats], engine: _Engine, strict: bool, threads: int
+    ) -> tuple[dict[str, Any], _Floats]: ...
     def encounter(self, motion: _Motion, other: _Motion, engine: _Engine) -> str: ...
 
 @final

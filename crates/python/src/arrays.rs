@@ -165,7 +165,7 @@ impl Points {
 }
 
 /// Cases without a result: their numbers and the reasons.
-type Failures = Vec<(usize, Failure)>;
+pub type Failures = Vec<(usize, Failure)>;
 
 /// The first of the failures as an exception, if `strict`.
 fn refuse(points: &Points, strict: bool, failures: &Failures) -> PyResult<()> {
@@ -223,7 +223,7 @@ fn messages(failures: &Failures) -> Vec<(usize, String)> {
 
 /// Results of successive collisions, as columns.
 #[derive(Default)]
-struct Columns {
+pub struct Columns {
     eps_t: Vec<f64>,
     eps_n: Vec<f64>,
     final_velocity: Vec<f64>,
@@ -241,7 +241,7 @@ struct Columns {
     sides: Vec<i8>,
     springs: Vec<f64>,
     velocities: Vec<f64>,
-    failures: Failures,
+    pub failures: Failures,
 }
 
 impl Columns {
@@ -254,7 +254,19 @@ impl Columns {
         columns
     }
 
-    fn push(&mut self, collision: &Collision) {
+    /// Adds the collision of a central impact, in which nothing is tangential.
+    pub fn push_central(&mut self, collision: &Collision) {
+        self.eps_t.push(f64::NAN);
+        self.eps_n.push(collision.eps_n);
+        self.final_velocity.push(0.0);
+        self.contact_time.push(collision.contact_time);
+        self.reversals.push(0);
+        let number = self.number("o".to_owned());
+        self.itinerary.push(number);
+        self.counts.push(0);
+    }
+
+    pub fn push(&mut self, collision: &Collision) {
         self.eps_t.push(collision.eps_t());
         self.eps_n.push(collision.eps_n);
         self.final_velocity.push(collision.final_velocity);
@@ -273,7 +285,7 @@ impl Columns {
         }
     }
 
-    fn push_failure(&mut self, index: usize, failure: Failure) {
+    pub fn push_failure(&mut self, index: usize, failure: Failure) {
         for column in
             [&mut self.eps_t, &mut self.eps_n, &mut self.final_velocity, &mut self.contact_time]
         {
@@ -295,7 +307,7 @@ impl Columns {
     }
 
     /// Adds the results of the collisions that follow.
-    fn append(&mut self, part: Self) {
+    pub fn append(&mut self, part: Self) {
         let numbers: Vec<i32> = part.itineraries.into_iter().map(|one| self.number(one)).collect();
         let number = |index: &i32| usize::try_from(*index).map_or(-1, |index| numbers[index]);
         self.itinerary.extend(part.itinerary.iter().map(number));
@@ -315,7 +327,7 @@ impl Columns {
     }
 
     /// A dictionary of arrays.
-    fn into_dictionary(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    pub fn into_dictionary(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let mut offset = 0;
         let starts = self.counts.iter().map(|count| {
             offset += count;

@@ -3,7 +3,7 @@
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::{PyErr, create_exception};
 use stickslip_model::exact::ExactError;
-use stickslip_model::{CollisionError, EngineError, InvalidParameter};
+use stickslip_model::{CollisionError, EncounterError, EngineError, InvalidParameter};
 use stickslip_plane::atlas::AtlasError;
 
 create_exception!(
@@ -28,6 +28,8 @@ pub fn failed(error: impl ToString) -> PyErr {
 pub enum Failure {
     /// No collision has these parameters.
     Parameter(InvalidParameter),
+    /// No impact is like this.
+    Encounter(EncounterError),
     /// The engine has no result.
     Engine(EngineError),
 }
@@ -38,6 +40,7 @@ impl Failure {
         matches!(
             self,
             Self::Parameter(_)
+                | Self::Encounter(_)
                 | Self::Engine(
                     EngineError::Collision(CollisionError::Domain(_))
                         | EngineError::Exact(ExactError::Domain(_))
@@ -49,6 +52,7 @@ impl Failure {
     pub fn message(&self) -> String {
         match self {
             Self::Parameter(error) => error.to_string(),
+            Self::Encounter(error) => error.to_string(),
             Self::Engine(error) => error.to_string(),
         }
     }
@@ -57,6 +61,15 @@ impl Failure {
     pub fn exception(&self, place: &str) -> PyErr {
         let message = format!("{place}{}", self.message());
         if self.is_bad_input() { bad_input(message) } else { failed(message) }
+    }
+}
+
+impl From<EncounterError> for Failure {
+    fn from(error: EncounterError) -> Self {
+        match error {
+            EncounterError::Invalid(error) => Self::Parameter(error),
+            error => Self::Encounter(error),
+        }
     }
 }
 

@@ -329,3 +329,26 @@ fn a_full_disk_leaves_nothing() {
     assert_eq!(workspace.names(), ["m.csv", "m.svg"]);
     assert!(ran.stderr.contains("going on with 1 of 1 tiles"), "{}", ran.stderr);
 }
+
+#[test]
+fn impacts_are_drawn_in_si_units() {
+    let workspace = Workspace::new();
+    let file = crate::impact::example("steel_pair.json");
+    let line = format!("impact {} --speed 2 --plot a.svg", file.display());
+    let ran = workspace.run(&format!("{line} --angle 0.5"));
+    assert_eq!((ran.code, ran.stderr.as_str(), ran.said.as_str()), (0, "", "wrote a.svg\n"));
+    let svg = workspace.read("a.svg");
+    for name in ["force [N]", "time [s]", "velocity of the surfaces [m/s]"] {
+        assert!(svg.contains(name), "{name}");
+    }
+    let switches = ran.stdout.lines().find(|line| line.starts_with("switches")).unwrap();
+    let count: usize = switches.split_whitespace().last().unwrap().parse().unwrap();
+    let document = Document::parse(&svg).expect("XML");
+    for group in groups(&document, "switches") {
+        let lines = group.children().filter(|node| node.has_tag_name("line"));
+        assert_eq!(lines.count(), count);
+    }
+    let ran = workspace.run(&format!("{line} --angle 0"));
+    assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
+    assert!(ran.stderr.contains("nothing is tangential in a central impact"), "{}", ran.stderr);
+}

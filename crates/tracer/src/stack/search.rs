@@ -172,7 +172,11 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         let Some(differing) = low.structure.differing(&high.structure) else { return Ok(()) };
         if high.value - low.value <= self.width(low.value, high.value) {
             let mut change = Change::new([low, high], None, false);
-            if let Some((meeting, between)) = self.unseen(low, high, &change.effects, &differing) {
+            change.meeting = self.enclosed([low, high], &differing);
+            if change.meeting.is_none()
+                && let Some((meeting, between)) =
+                    self.unseen(low, high, &change.effects, &differing)
+            {
                 (change.meeting, change.between) = (Some(meeting), between);
             }
             self.found.push((change, high.structure.clone()));
@@ -356,6 +360,18 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         }
         self.push([low, high], None, true);
         Ok(())
+    }
+
+    /// The meeting between two atlases that differ and are as close to each other as those beside a
+    /// meeting are. It may be one beside which atlases were in doubt before.
+    fn enclosed(&self, ends: [&Sample<F>; 2], differing: &[Vec<usize>; 2]) -> Option<Meeting> {
+        let [low, high] = ends.map(|sample| sample.value);
+        let is_between = |meeting: &Meeting| low < meeting.value && meeting.value < high;
+        let in_doubt = self.tried.iter().filter(|tried| tried.around.is_none());
+        in_doubt
+            .map(|tried| tried.meeting)
+            .find(is_between)
+            .or_else(|| self.meetings(ends, differing, Reach::Close).into_iter().find(is_between))
     }
 
     /// A meeting beside a change that atlases have enclosed, and the bracket that holds both: a
