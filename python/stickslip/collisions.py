@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -18,6 +19,7 @@ from stickslip._arrays import numbers, real
 from stickslip._axes import Panels, svg
 from stickslip._laws import Law
 from stickslip._libraries import library
+from stickslip._progress import keeping
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular, write_parquet
 
@@ -244,6 +246,10 @@ class Collision(Tabular):
     def picture(self) -> str:
         """Forces and velocity against time, as an SVG document."""
         return self._native.picture()
+
+    def animate(self, path: str | os.PathLike[str]) -> None:
+        """Writes the picture as it comes into being, an animated GIF."""
+        Path(path).write_bytes(self._native.animation())
 
     def _repr_html_(self) -> str:
         return self.picture()
@@ -626,7 +632,8 @@ def eps_t_and_switch_count(
     psi = _psi(psi, ratio, mu, alpha)
     _, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
-    found, counts, _ = _native.eps_t(flat, engine, chosen, _strict(errors), _threads(threads))
+    with keeping(lambda left: left[:2]):
+        found, counts, _ = _native.eps_t(flat, engine, chosen, _strict(errors), _threads(threads))
     return found.reshape(shape), counts.reshape(shape)
 
 
@@ -648,7 +655,9 @@ def collide_many(
 ) -> Collisions:
     """Collisions of arrays of parameters, with every switch of each.
 
-    As `eps_t`; with errors = "nan", `failures` says why collisions have no result.
+    As `eps_t`; with errors = "nan", `failures` says why collisions have no result. Ctrl-C keeps the
+    collisions that are done, in C order: they are `partial` of the KeyboardInterrupt, and of `eps_t`
+    and `eps_t_and_switch_count` both arrays of the latter.
 
     >>> many = collide_many([18.0, 63.0], 0.5)
     >>> many.itinerary.tolist(), many.switch_count.tolist()
@@ -659,5 +668,11 @@ def collide_many(
     psi = _psi(psi, ratio, mu, alpha)
     given, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
-    columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))
+    def first(left: dict[str, Any]) -> Collisions:
+        shape = left["eps_t"].shape
+        parameters = [one if one.size == 1 else one[: shape[0]] for one in flat]
+        return Collisions((parameters[0], parameters[1], parameters[2]), (*engine, *chosen), left, shape)
+
+    with keeping(first):
+        columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))
     return Collisions(given, (*engine, *chosen), columns, shape)

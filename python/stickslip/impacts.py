@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
@@ -17,6 +17,7 @@ from stickslip import _laws, _native, _pictures
 from stickslip._arrays import numbers
 from stickslip._axes import svg
 from stickslip._laws import Law
+from stickslip._progress import keeping
 from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Collisions, Floats, Method, OnError, _strict, _threads
 
@@ -395,7 +396,7 @@ def impact(
     file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0, and
     0 or above. Instead of them speed_m_per_s and angle_rad, the angle between velocity and normal,
     0 or above and below pi/2. law: the contact law of bodies that are read; `Bodies` have their own. The other
-    arguments are those of `collide_many`.
+    arguments are those of `collide_many`, and Ctrl-C keeps as much.
     """
     if isinstance(bodies, Bodies) and law is not None:
         raise ValueError(f"law = {law!r} is given for Bodies; expected in Bodies(..., law=...)")
@@ -421,14 +422,26 @@ def impact(
     flat = tuple(np.ascontiguousarray(one).reshape(-1) for one in (normal, tangential))
     engine, shape = (method, rtol, atol), normal.shape
     count = _threads(threads)
-    columns, rows = pair._pair.impacts(flat, engine, _strict(errors), count)
-    table = rows.reshape(*shape, -1) if rows.size else np.empty((*shape, len(_NUMBERS) + 6))
-    values = {name: table[..., index] for index, name in enumerate(_NUMBERS)}
-    spheres = table[..., len(_NUMBERS) :].reshape(*shape, -1, 6)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
-    scaled = (values["kappa"], values["psi"], values["damping"])
-    found = Collisions(scaled, (*engine, *chosen), columns, shape)
-    return Impacts(normal, tangential, found, values, spheres)
+
+    def made(
+        found: tuple[dict[str, Any], Floats], velocities: Sequence[Floats], shape: tuple[int, ...]
+    ) -> Impacts:
+        columns, rows = found
+        table = rows.reshape(*shape, -1) if rows.size else np.empty((*shape, len(_NUMBERS) + 6))
+        values = {name: table[..., index] for index, name in enumerate(_NUMBERS)}
+        spheres = table[..., len(_NUMBERS) :].reshape(*shape, -1, 6)
+        scaled = (values["kappa"], values["psi"], values["damping"])
+        collisions = Collisions(scaled, (*engine, *chosen), columns, shape)
+        return Impacts(*velocities, collisions, values, spheres)
+
+    def first(found: tuple[dict[str, Any], Floats]) -> Impacts:
+        count = found[0]["eps_t"].size
+        return made(found, [one[:count] for one in flat], (count,))
+
+    with keeping(first):
+        found = pair._pair.impacts(flat, engine, _strict(errors), count)
+    return made(found, (normal, tangential), shape)
 
 
 def _known(place: str, fields: Any, *names: str) -> None:

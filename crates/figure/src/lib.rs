@@ -28,7 +28,7 @@ pub mod pictures;
 pub use canvas::markup;
 pub use canvas::number::number;
 #[cfg(feature = "png")]
-pub use canvas::raster::png;
+pub use canvas::raster::{gif, png};
 pub use canvas::svg::Svg;
 pub use error::FigureError;
 

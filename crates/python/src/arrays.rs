@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::{Collision, Contact, Engine, Law, Regime};
 
 use crate::engines::{Choice, LawChoice};
-use crate::failure::{Failure, bad_input};
+use crate::failure::{Failure, bad_input, keeping};
 use crate::parallel::{Threads, in_pieces};
 
 /// Parameters of collisions: κ, ψ and damping, each with one value for all or for each.
@@ -207,14 +207,18 @@ pub fn eps_t<'py>(
         });
         (results, failed)
     };
-    Threads::new(threads, points.count)?.each(py, points.count, work, |(results, failed)| {
+    let threads = Threads::new(threads, points.count)?;
+    let ended = threads.each(py, points.count, work, |(results, failed)| {
         refuse(&points, strict, &failed)?;
         failures.extend(failed);
         eps_t.extend(results.iter().map(|result| result.0));
         counts.extend(results.iter().map(|result| result.1));
         Ok(())
-    })?;
-    (eps_t.into_pyarray(py), counts.into_pyarray(py), messages(&failures)).into_pyobject(py)
+    });
+    let found =
+        (eps_t.into_pyarray(py), counts.into_pyarray(py), messages(&failures)).into_pyobject(py)?;
+    ended.map_err(|error| keeping(py, error, || Ok(found.clone().into_any())))?;
+    Ok(found)
 }
 
 fn messages(failures: &Failures) -> Vec<(usize, String)> {
@@ -369,10 +373,12 @@ pub fn collide_many<'py>(
     let engine = engine.engine(points.law)?;
     let mut columns = Columns::default();
     let work = |part| Columns::of(&points, engine, part);
-    Threads::new(threads, points.count)?.each(py, points.count, work, |part| {
+    let ended = Threads::new(threads, points.count)?.each(py, points.count, work, |part| {
         refuse(&points, strict, &part.failures)?;
         columns.append(part);
         Ok(())
-    })?;
-    columns.into_dictionary(py)
+    });
+    let found = columns.into_dictionary(py)?;
+    ended.map_err(|error| keeping(py, error, || Ok(found.clone().into_any())))?;
+    Ok(found)
 }

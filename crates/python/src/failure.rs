@@ -1,7 +1,8 @@
 //! Errors of the libraries as Python's exceptions.
 
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
-use pyo3::{PyErr, create_exception};
+use pyo3::create_exception;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
 use stickslip_model::exact::ExactError;
 use stickslip_model::{CollisionError, EncounterError, EngineError, InvalidParameter};
 use stickslip_plane::atlas::AtlasError;
@@ -89,6 +90,19 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         failure.exception("")
     }
+}
+
+/// `error` with what was found before it as its attribute `partial`, if it is Ctrl-C.
+pub fn keeping<'py>(
+    py: Python<'py>,
+    error: PyErr,
+    partial: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+) -> PyErr {
+    if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+        // Without its attribute it is still Ctrl-C.
+        let _ = partial().and_then(|partial| error.value(py).setattr("partial", partial));
+    }
+    error
 }
 
 /// The exception for a window without atlas.

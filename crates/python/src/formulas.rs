@@ -13,7 +13,7 @@ use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 use stickslip_studies::own_system;
 
 use crate::background::{Signals, watched};
-use crate::failure::{bad_input, failed};
+use crate::failure::{bad_input, failed, keeping};
 use crate::studies;
 
 /// A parameter: its name, its value and its range.
@@ -195,13 +195,17 @@ impl FormulaSystem {
         let signals = Signals::default();
         let stops = || signals.stop();
         let found = py.detach(|| runnable.record_unless(&stops, method, end, &options));
-        signals.raised()?;
-        let found = found.map_err(|error| failed(self.system.explained(&error)))?;
+        let (found, interrupted) = match (found, signals.raised()) {
+            (Ok(found), interrupted) => (found, interrupted),
+            (Err(_), Err(interrupted)) => return Err(interrupted),
+            (Err(error), Ok(())) => return Err(failed(self.system.explained(&error))),
+        };
         let columns = columns(py, &self.system, &found, times)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
         let work = found.run.statistics.field + stages * found.steps().len() + 1;
         columns.set_item("nfev", work)?;
+        interrupted.map_err(|error| keeping(py, error, || Ok(columns.clone().into_any())))?;
         Ok(columns)
     }
 

@@ -4,6 +4,7 @@ use std::iter;
 use std::ops::Range;
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::document::IMPACT;
@@ -15,7 +16,7 @@ use stickslip_practice::fit::Bodies;
 
 use crate::arrays::{Columns, expect_equal, numbers};
 use crate::engines::{Choice, LawChoice, document};
-use crate::failure::{Failure, bad_input, failed};
+use crate::failure::{Failure, bad_input, failed, keeping};
 use crate::parallel::Threads;
 
 /// Radius in m, mass in kg, moment of inertia in kg m² or that of a homogeneous sphere, Young's
@@ -184,7 +185,7 @@ impl BodyPair {
         };
         let (mut columns, mut values) = (Columns::default(), Vec::new());
         let count = normal.len();
-        Threads::new(threads, count)?.each(py, count, work, |(part, found)| {
+        let ended = Threads::new(threads, count)?.each(py, count, work, |(part, found)| {
             if let (true, Some((index, failure))) = (strict, part.failures.first()) {
                 let place = if count == 1 { String::new() } else { format!("[{index}] ") };
                 return Err(failure.exception(&place));
@@ -192,8 +193,10 @@ impl BodyPair {
             columns.append(part);
             values.extend(found);
             Ok(())
-        })?;
-        Ok((columns.into_dictionary(py)?, values.into_pyarray(py)))
+        });
+        let found = (columns.into_dictionary(py)?, values.into_pyarray(py));
+        ended.map_err(|error| keeping(py, error, || found.clone().into_bound_py_any(py)))?;
+        Ok(found)
     }
 
     /// The impact of the two bodies with these motions, as the JSON that the program prints.

@@ -6,7 +6,7 @@ use stickslip_files::input::recipe::Given;
 use stickslip_files::input::rows::{Columns, Input};
 use stickslip_files::output::csv::Rows;
 use stickslip_files::output::json;
-use stickslip_files::output::picture::PictureFile;
+use stickslip_files::output::picture::{AnimationFile, PictureFile};
 use stickslip_files::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
 use stickslip_model::{Contact, Engine, document};
 use stickslip_studies::CollisionFailure;
@@ -18,7 +18,7 @@ use crate::shared::Format;
 use crate::shared::batch::{self, BatchArguments, BatchFiles, Work};
 use crate::shared::collision::{CollisionArguments, contact};
 use crate::shared::course::{Course, CourseArguments};
-use crate::shared::files::{self, plotted};
+use crate::shared::files::{self, plotted, require_different};
 use crate::shared::law::{self, LawArguments};
 use crate::shared::method::MethodArguments;
 
@@ -71,6 +71,11 @@ pub struct CollideArguments {
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 
+    /// Animation of the same picture
+    #[arg(long, value_name = "FILE.gif", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(value_parser = files::animation())]
+    pub animate: Option<AnimationFile>,
+
     /// The course of one collision.
     #[command(flatten, next_help_heading = "Output")]
     pub course: CourseArguments,
@@ -103,11 +108,16 @@ pub fn run(arguments: &CollideArguments) -> Result<(), Failure> {
 fn one(contact: &Contact, engine: &Engine, arguments: &CollideArguments) -> Result<(), Failure> {
     let plot = arguments.plot.as_ref();
     let law_file = law::file(arguments.law.law.as_deref());
-    let course = arguments.course.file(&[plotted(plot)], &[law_file])?;
+    let animate = arguments.animate.as_ref();
+    let outputs = [plotted(plot), ("--animate", animate.map(AnimationFile::path))];
+    require_different(&outputs, &[law_file])?;
+    let course = arguments.course.file(&outputs, &[law_file])?;
     let failed = |source| CollisionFailure::new(contact, source);
     plot.map_or(Ok(()), PictureFile::probe)?;
+    animate.map_or(Ok(()), AnimationFile::probe)?;
     course.map_or(Ok(()), Course::probe)?;
-    let (collision, statistics, history) = if plot.is_some() || course.is_some() {
+    let followed = plot.is_some() || animate.is_some() || course.is_some();
+    let (collision, statistics, history) = if followed {
         let (collision, statistics, history) = engine.followed(*contact).map_err(failed)?;
         (collision, statistics, Some(history))
     } else {
@@ -122,7 +132,10 @@ fn one(contact: &Contact, engine: &Engine, arguments: &CollideArguments) -> Resu
             |plot: &PictureFile| plot.write(Ok(pictures::collision::draw(&collision, history)));
         let picture = plot.map(draw).transpose()?;
         let course = course.map(|course| course.scaled(&collision, history)).transpose()?;
-        deliver(picture.into_iter().chain(course), "")?;
+        let film =
+            |file: &AnimationFile| file.write(pictures::collision::frames(&collision, history));
+        let animation = animate.map(film).transpose()?;
+        deliver(picture.into_iter().chain(animation).chain(course), "")?;
     }
     let (estimate, statistics) = (estimate.as_ref(), statistics.as_ref());
     print(|out| match arguments.format {
@@ -246,7 +259,7 @@ Accuracy at the default tolerances, for kappa 1e-6 to 1e6, psi 1e-10 to 10, damp
 Examples:
   stickslip collide --kappa 63 --psi 0.5
   stickslip collide --kappa 63 --psi 0.5 --plot collision.svg
-  stickslip collide --kappa 63 --psi 0.5 --course course.csv
+  stickslip collide --kappa 63 --psi 0.5 --course course.csv --animate collision.gif
   stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method dop853 --verbose
   stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
   stickslip collide --kappa 18 --psi 1.99 --estimate

@@ -51,7 +51,7 @@ pub struct LocateArguments {
 
     /// CSV file for the results, one row per point in the order of the input [default: standard
     /// output]
-    #[arg(long, value_name = "OUT.csv", help_heading = "Output", requires = "batch")]
+    #[arg(long, value_name = "OUT.csv", help_heading = "Output", conflicts_with = "kappa")]
     pub out: Option<PathBuf>,
 }
 
@@ -73,7 +73,8 @@ pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
     let Some(path) = path else {
         return Err(Failure::Usage("no atlas is given; expected ATLAS.json".to_owned()));
     };
-    let (named, batch) = (("ATLAS.json", Some(path)), ("--batch", arguments.batch.as_deref()));
+    let name = if arguments.atlas.is_some() { "--atlas" } else { "ATLAS.json" };
+    let (named, batch) = ((name, Some(path)), ("--batch", arguments.batch.as_deref()));
     require_one_standard_input(named, batch)?;
     require_different(&[("--out", out.as_deref())], &[batch, named])?;
     let out = out.as_deref().unwrap_or(Path::new(STANDARD_OUTPUT));

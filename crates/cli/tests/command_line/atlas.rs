@@ -185,7 +185,7 @@ fn a_window_without_a_boundary_is_one_region() {
     let line = "trace --kappa 5:6 --ratio 2.9:3.5 --mu 0.4 --alpha 2/7 --out a.json --plot a.png";
     let ran = workspace.run(line);
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
-    let found = "0 boundaries, 1 region, verified at 20000 points; wrote a.json, a.png\n";
+    let found = "0 boundaries, 1 region, verified at 20001 points; wrote a.json, a.png\n";
     assert_eq!(ran.said, found);
     let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
     let psi = [2.9, 3.5].map(|ratio| ratio * (2.0 / 7.0) / 0.4);

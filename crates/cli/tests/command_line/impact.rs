@@ -214,7 +214,7 @@ fn a_sphere_and_a_wall() {
     let wall = Wall { elasticity: Some(steel) };
     let encounter =
         Encounter::with_wall((&sphere, &motion), (&wall, &wall_motion), &surface).unwrap();
-    let collision = Collider::default().collide(encounter.contact()).unwrap();
+    let collision = exact::collide(encounter.contact()).unwrap();
     let [after, _] = encounter.outcome(&collision).motions;
     let spheres = object["spheres"].as_array().unwrap();
     assert_eq!(spheres.len(), 1);

@@ -16,6 +16,8 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 560.0;
 const FORCES: Rectangle = Rectangle { left: 80.0, top: 70.0, width: PANEL_WIDTH, height: 270.0 };
 const VELOCITY: Rectangle = Rectangle { top: 352.0, height: 156.0, ..FORCES };
+/// The number of moments of an animation.
+const FRAMES: u32 = 75;
 const TITLE_AT: (f64, f64) = (80.0, 22.0);
 const LEGEND_AT: (f64, f64) = (80.0, 50.0);
 
@@ -30,6 +32,19 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     let [force, time] = axes(&collision.contact);
     let course = Course::new(collision, history, FORCES.width);
     panels(&title(collision), &course, [force, time, "velocity w = (α/μ) g_t/g_n"])
+}
+
+/// The same picture at successive moments, up to which it is drawn, for an animation: the moments
+/// are evenly spaced, and the last one is the end of contact.
+pub fn frames(collision: &Collision, history: &History) -> impl Iterator<Item = Svg> {
+    let [force, time] = axes(&collision.contact);
+    let title = title(collision);
+    let whole = Course::new(collision, history, FORCES.width);
+    (1..=FRAMES).filter_map(move |frame| {
+        let moment = history.at(history.duration() * (f64::from(frame) / f64::from(FRAMES)))?;
+        let course = whole.clone().until(moment);
+        Some(panels(&title, &course, [force, time, "velocity w = (α/μ) g_t/g_n"]))
+    })
 }
 
 /// Draws an impact that is not central, whose course is `history`, in SI units.

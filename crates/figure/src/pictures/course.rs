@@ -25,6 +25,8 @@ pub struct Course<'a> {
     history: &'a History,
     samples: Vec<Snapshot>,
     units: Units,
+    /// The moment up to which it is drawn, if that is not the end.
+    until: Option<Snapshot>,
 }
 
 /// The units in which a course is drawn, in those of its values.
@@ -49,13 +51,24 @@ impl<'a> Course<'a> {
     pub fn new(collision: &Collision, history: &'a History, width: f64) -> Self {
         let phases = history.phases();
         let samples = phases.flat_map(|phase| samples(collision, history, phase, width)).collect();
-        Self { history, samples, units: Units::SCALED }
+        Self { history, samples, units: Units::SCALED, until: None }
     }
 
     /// The same course, drawn in other units.
     #[must_use]
     pub fn in_units(self, units: Units) -> Self {
         Self { units, ..self }
+    }
+
+    /// The same course, drawn up to a moment.
+    #[must_use]
+    pub fn until(self, moment: Snapshot) -> Self {
+        Self { until: Some(moment), ..self }
+    }
+
+    /// The time up to which it is drawn.
+    fn last(&self) -> f64 {
+        self.until.map_or(f64::INFINITY, |moment| moment.time)
     }
 
     /// The moments that are drawn; at a switch there are two.
@@ -98,7 +111,9 @@ impl<'a> Course<'a> {
     /// A quantity over the time, in the `unit` in which it is drawn.
     fn curve(&self, unit: f64, of: fn(&Snapshot) -> f64) -> impl Iterator<Item = (f64, f64)> {
         let place = move |sample: &Snapshot| (sample.time * self.units.time, unit * of(sample));
-        self.samples.iter().map(place)
+        let last = self.last();
+        let drawn = self.samples.iter().filter(move |sample| sample.time <= last);
+        drawn.chain(&self.until).map(place)
     }
 
     /// Draws the phases, the switches and the line of zero.
@@ -107,19 +122,21 @@ impl<'a> Course<'a> {
         let duration = unit * self.history.duration();
         let time = (-0.012 * duration, 1.012 * duration);
         let panel = Panel { frame, x: time, y: padded(range), scales: LINEAR };
+        let last = self.last();
+        let begun = || self.history.phases().filter(|phase| phase.begin().time <= last);
         svg.begin_group("phases");
-        for phase in self.history.phases() {
+        for phase in begun() {
             let colour = match (phase.regime(), phase.side()) {
                 (Regime::Stick, _) => continue,
                 (Regime::Slip, Side::Positive) => SLIP_POSITIVE,
                 (Regime::Slip, Side::Negative) => SLIP_NEGATIVE,
             };
-            panel.span(svg, (unit * phase.begin().time, unit * phase.end().time), colour);
+            panel.span(svg, (unit * phase.begin().time, unit * phase.end().time.min(last)), colour);
         }
         svg.end_group();
         panel.horizontal(svg, 0.0, RULE);
         svg.begin_group("switches");
-        for phase in self.history.phases().skip(1) {
+        for phase in begun().skip(1) {
             let (x, _) = panel.place((unit * phase.begin().time, 0.0));
             svg.line((x, panel.frame.top), (x, panel.frame.top + MARK), FRAME);
         }
