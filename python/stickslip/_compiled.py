@@ -29,10 +29,10 @@ class Compiled:
     function of ctypes, or the address of the code. parameters: numbers that are copied, and passed
     with each call.
 
-    What is at an address cannot be checked, beyond the types that Numba, SciPy or ctypes know. Another signature, or a function that reads or writes
-    beyond its arrays, ends in wrong numbers or in a crash of the interpreter. The function may be
-    called by any thread, and by several at once. It cannot raise an exception; NaN says that there
-    is no value.
+    What is at an address cannot be checked; the types that Numba, SciPy or ctypes declare are.
+    Another signature, or a function that reads or writes beyond its arrays, ends in wrong numbers
+    or in a crash of the interpreter. The function may be called by any thread, and by several at
+    once. It cannot raise an exception; NaN says that there is no value.
     """
 
     #: What `solve` asks of an event.
@@ -90,8 +90,8 @@ def _signature_of_ctypes(function: Any) -> str | None:
     """
     if function.argtypes is None:
         return None
-    names = {ctypes.c_double: "double", ctypes.c_void_p: "void*", None: "void"}
-    names |= {ctypes.POINTER(ctypes.c_double): "double*"}
+    names: dict[Any, str] = {ctypes.c_double: "double", ctypes.c_void_p: "void*", None: "void"}
+    names[ctypes.POINTER(ctypes.c_double)] = "double*"
 
     def name(one: Any) -> str:
         # NumPy's ndpointer says what it points to.
@@ -121,8 +121,8 @@ def _code_of(function: Any) -> tuple[int, int, str | None]:
         )(capsule)
         return int(pointer), int(context or 0), name.decode()
     if isinstance(function, _FUNCTION_OF_CTYPES):
-        address = int(ctypes.cast(function, ctypes.c_void_p).value or 0)
-        return address, 0, _signature_of_ctypes(function)
+        code = int(ctypes.cast(function, ctypes.c_void_p).value or 0)
+        return code, 0, _signature_of_ctypes(function)
     address = getattr(function, "address", None)
     if isinstance(address, int):
         signature = getattr(function, "_sig", None)

@@ -482,10 +482,10 @@ def collide(
 ) -> Collision:
     """One collision, with every switch.
 
-    kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with the
-    friction mu, 0.4 if there is none, and the tangential inertia alpha, 2/7 if there is none, as for
-    homogeneous spheres. damping: scaled damping, 0 or above. method: "exact", "dop853", "dopri5", or "auto", which is exact unless a tolerance is
-    given. rtol, atol: tolerances of a step of the integrators. law: the contact law, a name of `laws`
+    kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with
+    the friction mu, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as for
+    homogeneous spheres. damping: scaled damping, 0 or above. method: "exact", "dop853", "dopri5",
+    or "auto", which is exact unless a tolerance is given. rtol, atol: tolerances of a step of the integrators. law: the contact law, a name of `laws`
     or its terms; the paper's if there is none. tangential_damping: (gamma_t/gamma_n)/alpha of a law,
     0 or above.
 
@@ -655,9 +655,9 @@ def collide_many(
 ) -> Collisions:
     """Collisions of arrays of parameters, with every switch of each.
 
-    As `eps_t`; with errors = "nan", `failures` says why collisions have no result. Ctrl-C keeps the
-    collisions that are done, in C order: they are `partial` of the KeyboardInterrupt, and of `eps_t`
-    and `eps_t_and_switch_count` both arrays of the latter.
+    As `eps_t`; with errors = "nan", `failures` says why collisions have no result. Ctrl-C keeps
+    those that are done, in C order, as `partial` of the KeyboardInterrupt; of `eps_t` and
+    `eps_t_and_switch_count` these are both arrays of the latter.
 
     >>> many = collide_many([18.0, 63.0], 0.5)
     >>> many.itinerary.tolist(), many.switch_count.tolist()
@@ -670,8 +670,8 @@ def collide_many(
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
     def first(left: dict[str, Any]) -> Collisions:
         shape = left["eps_t"].shape
-        parameters = [one if one.size == 1 else one[: shape[0]] for one in flat]
-        return Collisions((parameters[0], parameters[1], parameters[2]), (*engine, *chosen), left, shape)
+        kappa, psi, damping = (one if one.size == 1 else one[: shape[0]] for one in flat)
+        return Collisions((kappa, psi, damping), (*engine, *chosen), left, shape)
 
     with keeping(first):
         columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))

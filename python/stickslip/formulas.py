@@ -112,8 +112,8 @@ class FormulaSystem:
         values, by name. The rest is as in `stickslip.solve`. Guards of the events are the rules,
         by their labels.
 
-        Raises ValueError if a name or a value is wrong, and ComputationError if the run fails. Ctrl-C
-        keeps the run up to there: it is `partial` of the KeyboardInterrupt.
+        Raises ValueError if a name or a value is wrong, and ComputationError if the run fails.
+        Ctrl-C keeps the run up to there as `partial` of the KeyboardInterrupt.
         """
         rerun = self._arguments(
             (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)

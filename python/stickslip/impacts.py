@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
@@ -393,10 +393,10 @@ def impact(
     """Impacts of two bodies for arrays of velocities, which broadcast.
 
     bodies: two bodies, an object with the layout of docs/impact.schema.json, or the path of such a
-    file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0, and
-    0 or above. Instead of them speed_m_per_s and angle_rad, the angle between velocity and normal,
-    0 or above and below pi/2. law: the contact law of bodies that are read; `Bodies` have their own. The other
-    arguments are those of `collide_many`, and Ctrl-C keeps as much.
+    file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0,
+    and 0 or above. Instead of them speed_m_per_s and angle_rad, the angle between velocity and
+    normal, 0 or above and below pi/2. law: the contact law of bodies that are read; `Bodies` have
+    their own. The other arguments are those of `collide_many`, and Ctrl-C keeps as much.
     """
     if isinstance(bodies, Bodies) and law is not None:
         raise ValueError(f"law = {law!r} is given for Bodies; expected in Bodies(..., law=...)")
@@ -419,27 +419,34 @@ def impact(
         numbers("normal_m_per_s", normal_m_per_s),
         numbers("tangential_m_per_s", tangential_m_per_s),
     )
-    flat = tuple(np.ascontiguousarray(one).reshape(-1) for one in (normal, tangential))
+    flat: tuple[Floats, Floats] = (
+        np.ascontiguousarray(normal).reshape(-1),
+        np.ascontiguousarray(tangential).reshape(-1),
+    )
     engine, shape = (method, rtol, atol), normal.shape
     count = _threads(threads)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
 
     def made(
-        found: tuple[dict[str, Any], Floats], velocities: Sequence[Floats], shape: tuple[int, ...]
+        found: tuple[dict[str, Any], Floats],
+        velocities: tuple[Floats, Floats],
+        shape: tuple[int, ...],
     ) -> Impacts:
         columns, rows = found
-        table = rows.reshape(*shape, -1) if rows.size else np.empty((*shape, len(_NUMBERS) + 6))
+        count = 2 if isinstance(pair.other, Sphere) else 1
+        table = rows.reshape(*shape, len(_NUMBERS) + 6 * count)
         values = {name: table[..., index] for index, name in enumerate(_NUMBERS)}
-        spheres = table[..., len(_NUMBERS) :].reshape(*shape, -1, 6)
+        spheres = table[..., len(_NUMBERS) :].reshape(*shape, count, 6)
         scaled = (values["kappa"], values["psi"], values["damping"])
         collisions = Collisions(scaled, (*engine, *chosen), columns, shape)
-        return Impacts(*velocities, collisions, values, spheres)
+        before, across = velocities
+        return Impacts(before, across, collisions, values, spheres)
 
-    def first(found: tuple[dict[str, Any], Floats]) -> Impacts:
+    def done(found: tuple[dict[str, Any], Floats]) -> Impacts:
         count = found[0]["eps_t"].size
-        return made(found, [one[:count] for one in flat], (count,))
+        return made(found, (flat[0][:count], flat[1][:count]), (count,))
 
-    with keeping(first):
+    with keeping(done):
         found = pair._pair.impacts(flat, engine, _strict(errors), count)
     return made(found, (normal, tangential), shape)
 

@@ -40,7 +40,7 @@ fn an_animation_ends_with_the_picture() {
     let history = Collider::default().history(contact).unwrap();
     let frames: Vec<_> = pictures::collision::frames(&collision, &history).collect();
     // There are two panels.
-    let switches = |svg: &Svg| count_in(&svg.document(), "switches", "line") / 2;
+    let switches = |svg: &Svg| count_in(svg, "switches", "line") / 2;
     let counts: Vec<_> = frames.iter().map(switches).collect();
     assert!(counts.is_sorted() && counts[0] == 0 && counts[counts.len() - 1] == 6, "{counts:?}");
     let film = gif(frames.into_iter().step_by(25)).unwrap();
