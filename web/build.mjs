@@ -1,16 +1,17 @@
 // Builds the page: Rust to WebAssembly, TypeScript to JavaScript, all into one HTML file.
 //
-//   node build.mjs             builds the module and the page
-//   node build.mjs --page      builds the page alone, with the module of the last build
-//   node build.mjs --check     builds both, and fails if the page of crates/page is another one
+//   node build.mjs               builds the module and the page, crates/page/explorer.html
+//   node build.mjs --page        builds the page alone, with the module of the last build
+//   node build.mjs --out FILE    builds both, and writes the page into a file of its own
 //
 // With rustup: `rustup target add wasm32-unknown-unknown`. Without that target, Debian's packages
 // rustc-web and rust-web-src have a compiler and the sources of its library, which is built too.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { parseArgs } from "node:util";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -116,15 +117,9 @@ async function page() {
   return html;
 }
 
-const [mode] = process.argv.slice(2);
-const out = join(root, "crates", "page", "explorer.html");
-if (mode !== "--page") compile();
+const { values: options } = parseArgs({
+  options: { page: { type: "boolean" }, out: { type: "string" } },
+});
+if (!options.page) compile();
 execFileSync(join(here, "node_modules/.bin/tsc"), ["--noEmit"], { cwd: here, stdio: "inherit" });
-const html = await page();
-if (mode === "--check") {
-  if (readFileSync(out, "utf8") !== html)
-    throw new Error("crates/page/explorer.html is not what its sources make; run `node build.mjs`");
-} else {
-  mkdirSync(dirname(out), { recursive: true });
-  writeFileSync(out, html);
-}
+writeFileSync(options.out ?? join(root, "crates", "page", "explorer.html"), await page());

@@ -5,7 +5,7 @@ Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impa
 (regions over the damping), `map` and `sweep` (xarray), `timestep` (errors of the steps of particle
 codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up), `solve`
 (systems of your own), `trace_family` (where their events change over two parameters),
-`stack_family` (and how that changes with a third one).
+`stack_family` (and how that changes with a third one), `explore` (a page that computes all that).
 """
 
 import importlib
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     __version__: str
     from stickslip._compiled import Compiled
     from stickslip._derivatives import Sensitivities
+    from stickslip._explorer import Explorer, explore
     from stickslip._laws import NamedLaw, laws
     from stickslip._native import ComputationError
     from stickslip._solutions import DenseOutput, Solution
@@ -106,6 +107,7 @@ __all__ = [
     "ComputationError",
     "DenseOutput",
     "Estimate",
+    "Explorer",
     "FamilyAtlas",
     "FamilyChange",
     "FamilyCurve",
@@ -161,6 +163,7 @@ __all__ = [
     "converge",
     "eps_t",
     "eps_t_and_switch_count",
+    "explore",
     "fit",
     "from_sympy",
     "gaining_lines",
@@ -191,6 +194,7 @@ __all__ = [
 _MODULES = {
     "_compiled": "Compiled",
     "_derivatives": "Sensitivities",
+    "_explorer": "Explorer explore",
     "_laws": "NamedLaw laws",
     "_native": "ComputationError",
     "_solutions": "DenseOutput Solution",

@@ -159,8 +159,9 @@ class Page {
     this.showLegend();
     clearTimeout(this.hashTimer);
     this.hashTimer = setTimeout(() => {
-      const hash = encoded(this.store.state, this.preset);
-      if (hash !== location.hash.slice(1))
+      const hash = this.fragment();
+      // In a frame without an address there is nothing to change.
+      if (location.protocol !== "about:" && hash !== location.hash.slice(1))
         history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
     }, 200);
   }
@@ -312,7 +313,12 @@ class Page {
   }
 
   link(): string {
-    return `${location.href.split("#")[0]}#${encoded(this.store.state, this.preset)}`;
+    return `${location.href.split("#")[0]}#${this.fragment()}`;
+  }
+
+  /** What a link to the present view ends with. A page with a view of its own needs more words. */
+  private fragment(): string {
+    return encoded(this.store.state, this.preset) || (ownView() ? "preset=plane" : "");
   }
 
   /** Writes a file by the name of its button. */
@@ -504,13 +510,18 @@ class Page {
   }
 }
 
+/** The view with which the page was written. */
+function ownView(): string {
+  return document.querySelector<HTMLMetaElement>("meta[name=stickslip-view]")?.content ?? "";
+}
+
 const HINT = "Drag the point; wheel or pinch to zoom; Shift and drag to move the window.";
 
 async function start(): Promise<void> {
   try {
     // Controls are drawn, and the first worker starts, while the module is unpacked.
     const module = new Promise((resolve) => setTimeout(resolve)).then(compiled);
-    const page = new Page(module, decoded(location.hash));
+    const page = new Page(module, decoded(location.hash || ownView()));
     (globalThis as Record<string, unknown>).explorer = page.inside;
     await module;
     document.body.classList.add("ready");

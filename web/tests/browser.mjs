@@ -3,7 +3,7 @@
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-const PAGE =
+export const PAGE =
   process.env.PAGE ?? fileURLToPath(new URL("../../crates/page/explorer.html", import.meta.url));
 
 /** A browser; its pages collect what they say, which should be nothing. */
@@ -24,7 +24,13 @@ export async function launch() {
   return {
     close: () => browser.close(),
     /** Opens the page at a fragment. */
-    async open(fragment = "", { width = 1300, height = 900, scheme = "light" } = {}) {
+    async open(fragment = "", options = {}) {
+      const opened = await this.openFile(PAGE, fragment, options);
+      await opened.page.waitForSelector("body.ready");
+      return opened;
+    },
+    /** Opens another page. */
+    async openFile(file, fragment = "", { width = 1300, height = 900, scheme = "light" } = {}) {
       const context = await browser.newContext({
         viewport: { width, height },
         colorScheme: scheme,
@@ -37,8 +43,7 @@ export async function launch() {
       page.on("request", (request) => {
         if (!/^(file|blob|data):/.test(request.url())) said.push(`request of ${request.url()}`);
       });
-      await page.goto(`file://${PAGE}${fragment ? `#${fragment}` : ""}`);
-      await page.waitForSelector("body.ready");
+      await page.goto(`file://${file}${fragment ? `#${fragment}` : ""}`);
       return { page, said, close: () => context.close() };
     },
   };

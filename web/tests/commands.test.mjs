@@ -17,6 +17,9 @@ const skip = program
   ? false
   : "there is no native program; expected target/debug/stickslip, or STICKSLIP";
 
+// A Python with the package, if there is one.
+const python = process.env.PYTHON;
+
 let browser;
 let folder;
 before(async () => {
@@ -33,6 +36,18 @@ const run = (line, ...more) => {
   assert.equal(name, "stickslip");
   return execFileSync(program, [...words, ...more], { cwd: folder, encoding: "utf8" });
 };
+
+/** Runs lines of Python and more, and returns the JSON that these print. */
+const inPython = (lines, more) =>
+  JSON.parse(
+    execFileSync(python, ["-c", `${lines}\nimport json\nprint(json.dumps(${more}))`], {
+      cwd: folder,
+      encoding: "utf8",
+    })
+      .trimEnd()
+      .split("\n")
+      .at(-1),
+  );
 
 const lines = (page) => page.locator("#lines pre").allTextContents();
 
@@ -73,13 +88,20 @@ for (const [name, change] of [
     const regions = await page.evaluate(() =>
       globalThis.explorer.plane.atlas.regions.map((it) => it.itinerary).sort(),
     );
-    const [collide, , trace] = await lines(page);
+    const [collide, inPythonToo, trace, traceInPython] = await lines(page);
     const native = JSON.parse(run(collide, "--format", "json"));
     assert.equal(native.itinerary, own.itinerary, collide);
     assert.ok(Math.abs(native.eps_t - own.eps_t) < 1e-11, collide);
     run(trace);
     const atlas = JSON.parse(readFileSync(join(folder, "atlas.json"), "utf8"));
     assert.deepEqual(atlas.regions.map((it) => it.itinerary).sort(), regions, trace);
+    if (python) {
+      const found = inPython(inPythonToo, "[collision.itinerary, collision.eps_t]");
+      assert.equal(found[0], own.itinerary, inPythonToo);
+      assert.ok(Math.abs(found[1] - own.eps_t) < 1e-11, inPythonToo);
+      const traced = inPython(traceInPython, "sorted(it.itinerary for it in atlas.regions)");
+      assert.deepEqual(traced, regions, traceInPython);
+    }
     assert.deepEqual(said, []);
     await close();
   });
@@ -91,7 +113,7 @@ test("commands of a system", { skip }, async () => {
   const { page, said, close } = await browser.open(view);
   await page.waitForFunction(() => globalThis.explorer.system.run);
   await traced(page);
-  const [shell] = await lines(page);
+  const [shell, inPythonToo] = await lines(page);
   const [solve, trace] = shell.split("\n");
   writeFileSync(join(folder, "ball.slip"), await page.inputValue("#editor"));
   const native = JSON.parse(run(solve, "--format", "json"));
@@ -107,6 +129,10 @@ test("commands of a system", { skip }, async () => {
     await page.evaluate(() => globalThis.explorer.plane.atlas.regions.length),
     trace,
   );
+  if (python) {
+    const [events, regions] = inPython(inPythonToo, "[len(found.events), len(atlas.regions)]");
+    assert.deepEqual([events, regions], [own.events.length, atlas.regions.length], inPythonToo);
+  }
   assert.deepEqual(said, []);
   await close();
 });

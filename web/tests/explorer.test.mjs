@@ -1,9 +1,11 @@
 // The page in a browser: its numbers against those of the native program, and all that one can do.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { downloaded, launch, mapped, settled, traced } from "./browser.mjs";
+import { PAGE, downloaded, launch, mapped, settled, traced } from "./browser.mjs";
 
 const data = (name) => JSON.parse(readFileSync(new URL(`data/${name}`, import.meta.url), "utf8"));
 
@@ -479,4 +481,34 @@ ofPage("the first curves come soon, and a frame of dragging is short", "", async
     `first contact after ${Math.round(first)} ms, drawing of a frame ${frames[30].toFixed(1)} ms, map ${Math.round(took)} ms`,
   );
   assert.ok(first < 5000 && frames[30] < 50);
+});
+
+test("a page that was written with a view shows it, and in a frame too", async () => {
+  const written = readFileSync(PAGE, "utf8").replace(
+    'name="stickslip-view" content=""',
+    'name="stickslip-view" content="law=paper&amp;damping=0.125&amp;point=%5B20%2C0.4%5D"',
+  );
+  const folder = mkdtempSync(join(tmpdir(), "explorer-"));
+  const [own, framed] = ["own.html", "framed.html"].map((name) => join(folder, name));
+  writeFileSync(own, written);
+  const escaped = written.replace(/&/g, "&amp;").replace(/"/g, "&quot;");
+  writeFileSync(framed, `<iframe width="1200" height="800" srcdoc="${escaped}"></iframe>`);
+  const state = () => [
+    globalThis.explorer.store.state.damping,
+    ...globalThis.explorer.store.state.point,
+  ];
+  for (const [file, fragment, expected] of [
+    [own, "", [0.125, 20, 0.4]],
+    [own, "preset=plane", [0, 63, 0.5]],
+    [framed, "", [0.125, 20, 0.4]],
+  ]) {
+    const { page, said, close } = await browser.openFile(file, fragment);
+    const frame = page.frames().at(-1);
+    await frame.waitForFunction(() => globalThis.explorer?.contact.contact);
+    assert.deepEqual(await frame.evaluate(state), expected, `${file} ${fragment}`);
+    await page.waitForTimeout(500);
+    assert.deepEqual(said, []);
+    await close();
+  }
+  rmSync(folder, { recursive: true });
 });

@@ -6,6 +6,7 @@ mod asymptote;
 mod collide;
 mod completions;
 mod converge;
+mod explore;
 mod fit;
 mod impact;
 mod join;
@@ -49,6 +50,7 @@ pub enum Command {
     Trace(trace::TraceArguments),
     Stack(stack::StackArguments),
     Locate(locate::LocateArguments),
+    Explore(explore::ExploreArguments),
     Reproduce(reproduce::ReproduceArguments),
     Asymptote(asymptote::AsymptoteArguments),
     Converge(converge::ConvergeArguments),
@@ -76,6 +78,7 @@ impl Command {
             Self::Trace(arguments) => trace::run(arguments),
             Self::Stack(arguments) => stack::run(arguments),
             Self::Locate(arguments) => locate::run(arguments),
+            Self::Explore(arguments) => explore::run(arguments),
             Self::Reproduce(arguments) => reproduce::run(arguments),
             Self::Asymptote(arguments) => asymptote::run(arguments),
             Self::Converge(arguments) => converge::run(arguments),

@@ -66,6 +66,14 @@ pub enum Failure {
         /// The output file.
         path: PathBuf,
     },
+    /// A page was written, and no browser opens it.
+    #[error("no browser opens {}: {error}", path.display())]
+    Browser {
+        /// The page.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
     Trace(AtlasError),

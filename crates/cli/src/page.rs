@@ -8,7 +8,8 @@ pub mod report;
 use askama::Template;
 use stickslip_figure::markup::plain;
 use stickslip_figure::number;
-use stickslip_reproduction::figures::{Section, headlines};
+use stickslip_plane::Range;
+use stickslip_reproduction::figures::{Section, boundaries, figure2, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
 use stickslip_studies::{Cell, Column, Study, Table, contact_laws};
 
@@ -74,6 +75,30 @@ pub fn laws(study: Study) -> String {
     let (title, command, sections) = (contact_laws::TITLE, "laws", &[section][..]);
     // As above.
     Page { title, introduction, command, sections }.render().unwrap_or_default()
+}
+
+/// The view of the explorer that shows the plane of a section, as the end of a link.
+fn explored(section: &str) -> Option<String> {
+    // Braces and quotes of JSON, percent-encoded.
+    let axis = |low: f64, high: f64, log: bool| {
+        format!("%7B%22low%22:{low},%22high%22:{high},%22log%22:{log}%7D")
+    };
+    match section {
+        "figure1" | "figure3" | "figure4" | "figure5" | "figure6" => {
+            Some(format!("preset={section}"))
+        }
+        "figure2" => {
+            let Range { low, high } = figure2::VELOCITY;
+            let axis = axis(low, high, false);
+            Some(format!("preset=figure2&x={axis}&y={axis}"))
+        }
+        "boundaries" => {
+            let [kappa, psi] = [boundaries::KAPPA, boundaries::PSI];
+            let x = axis(kappa.low, kappa.high, true);
+            Some(format!("preset=plane&x={x}&y={}", axis(psi.low, psi.high, true)))
+        }
+        _ => None,
+    }
 }
 
 /// The tables of a section that stand on the page; an audit is shown statement by statement

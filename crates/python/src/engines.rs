@@ -96,6 +96,12 @@ pub fn version() -> &'static str {
     env!("CARGO_PKG_VERSION")
 }
 
+/// The explorer, a page of HTML, opened with a view.
+#[pyfunction]
+pub fn explorer(view: &str) -> String {
+    stickslip_page::showing(view)
+}
+
 /// Whether this build adds products in one instruction.
 #[pyfunction]
 pub fn has_fused_products() -> bool {

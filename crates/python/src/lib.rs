@@ -44,7 +44,9 @@ mod _native {
     #[pymodule_export]
     use super::collision::Collision;
     #[pymodule_export]
-    use super::engines::{has_fused_products, laws, processor_has_fused_products, version};
+    use super::engines::{
+        explorer, has_fused_products, laws, processor_has_fused_products, version,
+    };
     #[pymodule_export]
     use super::failure::ComputationError;
     #[pymodule_export]

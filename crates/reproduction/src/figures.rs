@@ -5,11 +5,11 @@
 //! parts), `points` (where the points a to o of Figure 4 are), `stiffness_map`, [`Sweep`], `course`
 //! and `columns` (what several figures need).
 
-mod boundaries;
+pub mod boundaries;
 mod columns;
 mod course;
 mod figure1;
-mod figure2;
+pub mod figure2;
 mod figure3;
 mod figure4;
 mod figure5;

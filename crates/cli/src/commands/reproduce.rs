@@ -113,6 +113,7 @@ fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Fa
     let page = out.join("index.html");
     write(&out.join("report.json"), page::report::json(&sections).as_bytes())?;
     write(&out.join("report.md"), page::report::markdown(&sections).as_bytes())?;
+    write(&out.join("explorer.html"), stickslip_page::PAGE.as_bytes())?;
     write(&page, page::html(&sections).as_bytes())?;
     say(format_args!("everything is on {}", page.display()));
     let objection = sections.into_iter().flat_map(|section| section.objections).next();

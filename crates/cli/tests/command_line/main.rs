@@ -15,6 +15,7 @@ mod completions;
 mod converge;
 mod courses;
 mod exit_codes;
+mod explore;
 mod fit;
 mod impact;
 mod impact_batch;

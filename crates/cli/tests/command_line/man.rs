@@ -4,11 +4,12 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 19] = [
+const PAGES: [&str; 20] = [
     "stickslip-asymptote.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
     "stickslip-converge.1",
+    "stickslip-explore.1",
     "stickslip-fit.1",
     "stickslip-impact.1",
     "stickslip-join.1",

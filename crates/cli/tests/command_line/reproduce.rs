@@ -107,7 +107,7 @@ pub fn names_of_laws() -> Vec<String> {
 
 fn expected_names() -> Vec<String> {
     let pictures = PICTURES.iter().map(|name| format!("{name}.svg"));
-    let pages = ["index.html", "report.json", "report.md"].map(str::to_owned);
+    let pages = ["explorer.html", "index.html", "report.json", "report.md"].map(str::to_owned);
     let files = pictures.chain(DATA.map(str::to_owned)).chain(pages);
     let mut names: Vec<String> = files.chain(names_of_laws()).collect();
     names.sort();

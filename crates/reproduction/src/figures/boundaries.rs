@@ -17,8 +17,10 @@ use crate::error::ReproductionError;
 /// The title of the part.
 pub const TITLE: &str = "All boundaries of the switching";
 
-const KAPPA: Range = Range { low: 0.05, high: 100.0 };
-const PSI: Range = Range { low: 0.01, high: 3.0 };
+/// The range of κ.
+pub const KAPPA: Range = Range { low: 0.05, high: 100.0 };
+/// The range of ψ.
+pub const PSI: Range = Range { low: 0.01, high: 3.0 };
 
 /// Computes the part.
 ///

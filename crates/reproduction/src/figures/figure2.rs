@@ -21,7 +21,7 @@ use crate::error::ReproductionError;
 pub const TITLE: &str = "Figure 2: two steel spheres";
 
 /// The range of both velocities, in m/s.
-const VELOCITY: Range = Range { low: 0.0, high: 200.0 };
+pub const VELOCITY: Range = Range { low: 0.0, high: 200.0 };
 const SURFACE: Surface = Surface {
     friction: MU,
     tangential_stiffness_kg_per_s2: STEEL_STIFFNESS_KG_PER_S2,
