@@ -83,7 +83,9 @@ fn damaged(file: &[u8], random: &mut Rng) -> Vec<u8> {
         match random.u8(..8) {
             0 => bytes[at] = random.u8(..),
             1 => bytes[at] ^= 1 << random.u8(..8),
-            2 => drop(bytes.remove(at)),
+            2 => {
+                bytes.remove(at);
+            }
             3 => bytes.insert(at, bytes[random.usize(..bytes.len())]),
             4 => drop(bytes.drain(at..end)),
             5 => bytes.extend_from_within(at..end),
