@@ -27,7 +27,7 @@ pub mod pictures;
 
 pub use canvas::markup;
 #[cfg(feature = "png")]
-pub use canvas::raster::png;
+pub use canvas::raster::{gif, png};
 pub use canvas::style;
 pub use canvas::svg::Svg;
 pub use error::FigureError;

@@ -2,14 +2,15 @@
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
-use stickslip_figure::pictures;
+use pyo3::types::PyBytes;
+use stickslip_figure::{gif, pictures};
 use stickslip_model::document::COLLISION;
 use stickslip_model::{Collider, Contact, Derived, Engine, History, Snapshot};
 use stickslip_solver::Statistics;
 
 use crate::arrays::numbers;
 use crate::engines::{Choice, LawChoice, document};
-use crate::failure::{Failure, bad_input};
+use crate::failure::{Failure, bad_input, failed};
 
 /// A collision with what computed it.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -102,6 +103,14 @@ impl Collision {
     fn picture(&self, py: Python<'_>) -> PyResult<String> {
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
         Ok(pictures::collision::draw(&self.result, &history).document())
+    }
+
+    /// The same picture as it comes into being, as GIF.
+    fn animation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let history = py.detach(|| self.course()).map_err(Failure::from)?;
+        let frames = pictures::collision::frames(&self.result, &history);
+        let film = py.detach(|| gif(frames)).map_err(failed)?;
+        Ok(PyBytes::new(py, &film))
     }
 }
 

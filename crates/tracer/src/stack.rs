@@ -195,8 +195,8 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         let mut options = *options;
         options.atlas.trace.beyond = 0.0;
         let surveyor = Surveyor { options: options.atlas, executor, watch: watch.silently() };
-        let span = values[values.len() - 1] - values[0];
-        let mut search = Search::new(&family, *window, options, surveyor, watch, span);
+        let range = [values[0], values[values.len() - 1]];
+        let mut search = Search::new(&family, *window, options, surveyor, watch, range);
         watch.report(Progress::Begin { steps: values.len() });
         let mut samples = Vec::with_capacity(values.len());
         for &value in values {

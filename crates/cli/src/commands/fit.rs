@@ -8,7 +8,6 @@ use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::source::{is_standard_input, shown};
 use stickslip_files::input::{bodies, law, measured, number, range};
-use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Law, presets};
@@ -16,7 +15,7 @@ use stickslip_plane::Range;
 use stickslip_practice::fit::{self, Bodies, Free, Settings, Values};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::shared::Format;
 use crate::shared::collision::reduction;
 use crate::shared::files::{self, plotted, require_different};
@@ -120,7 +119,7 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
             let expected = "expected data at an angle above 0";
             Failure::Usage(format!("--plot has nothing to draw; {expected}"))
         })?;
-        publish([plot.write(Ok(picture))?])?;
+        deliver([plot.write(Ok(picture))?], "")?;
     }
     print(|out| match arguments.format {
         Format::Json => json::lines(out, &result),

@@ -6,16 +6,17 @@ use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::reduced;
 use stickslip_files::input::{number, range};
-use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Document, Frame, geojson};
+use stickslip_plane::atlas::{self, Document, Frame, VerifiedAtlas, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{Surveyor, Watch};
 
 use crate::error::Failure;
+use crate::output::console::{counted, deliver};
 use crate::shared::collision::{CollisionArguments, ImpactRange, window};
 use crate::shared::files::{self, plotted, require_different, write_json};
 use crate::shared::law::LawArguments;
@@ -130,12 +131,26 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::atlas::draw(&verified)))?);
     }
-    publish(stored)?;
-    Failure::if_doubtful(out, verified.objection())?;
+    deliver(stored, found(&verified))?;
+    Failure::if_doubtful(out, "atlas is", verified.objection())?;
     match (lines, gained) {
-        (Some(path), Some(gained)) => Failure::if_doubtful(path, gained.objection()),
+        (Some(path), Some(gained)) => Failure::if_doubtful(path, "lines are", gained.objection()),
         _ => Ok(()),
     }
+}
+
+/// What was found, in a sentence.
+fn found(VerifiedAtlas { atlas, report, .. }: &VerifiedAtlas) -> String {
+    let all = boundaries_and_regions(atlas.regions.curves().len(), atlas.regions.regions().len());
+    let points = report.tried;
+    let verified = if report.agrees { "verified" } else { "not all confirmed" };
+    format!("{all}, {verified} at {points} points")
+}
+
+/// How many there are.
+fn boundaries_and_regions(boundaries: usize, regions: usize) -> String {
+    let boundaries = counted(boundaries, "boundary", "boundaries");
+    format!("{boundaries}, {}", counted(regions, "region", "regions"))
 }
 
 /// The window of the options.
@@ -176,8 +191,10 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.names)))?);
     }
-    publish(stored)?;
-    Failure::if_doubtful(out, atlas.doubts(&plane.names).map(|doubts| doubts.objection()))
+    let found = boundaries_and_regions(atlas.plane.curves().len(), atlas.plane.regions().len());
+    deliver(stored, found)?;
+    let objection = atlas.doubts(&plane.names).map(|doubts| doubts.objection());
+    Failure::if_doubtful(out, "atlas is", objection)
 }
 
 /// What `trace --help` says first.

@@ -11,7 +11,7 @@ use stickslip_studies::{Study, StudyError};
 
 use super::threads::ThreadsArguments;
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{print, say};
 
 /// Makes a study with its pictures, writes its files into the directory `out`, and prints its findings.
 ///
@@ -25,7 +25,9 @@ pub fn run(
     prepare(out)?;
     let (study, pictures) = threads.with_steps(make)??;
     write_study(&study, &pictures, out)?;
-    print(|out| study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
+    print(|out| study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))?;
+    say(format_args!("wrote {}", out.display()));
+    Ok(())
 }
 
 /// The failure of settings that are out of range. The settings have the names of the options.

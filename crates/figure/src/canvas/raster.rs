@@ -1,4 +1,4 @@
-//! Pictures as PNG.
+//! Pictures as PNG and GIF.
 
 use std::sync::Arc;
 
@@ -15,12 +15,53 @@ const SCALE: f32 = 2.0;
 /// The font DejaVu Sans, so that no font needs to be installed; see `assets/README.md`.
 const FONT_FILE: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
 
+/// Hundredths of a second for each picture of an animation, and for the last one.
+const PAUSES: [u16; 2] = [6, 200];
+
 /// The picture as a PNG file, with two pixels for each pixel of the SVG.
 ///
 /// # Errors
 /// [`FigureError::Size`]: the picture has no size. [`FigureError::Memory`]: it is too large for
 /// memory.
 pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
+    Ok(pixels(svg, SCALE)?.encode_png()?)
+}
+
+/// Pictures of one size as a GIF file, which shows them one after another, again and again, with
+/// one pixel for each pixel of the SVG.
+///
+/// # Errors
+/// As [`png`]. [`FigureError::Gif`]: there are pictures of several sizes, or larger ones than GIF
+/// allows.
+pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureError> {
+    /// How hard 256 colours are looked for, from 1, the best, to 30.
+    const SPEED: i32 = 10;
+    let mut file = Vec::new();
+    let mut pictures = pictures.into_iter().peekable();
+    let side = |pixels: u32| u16::try_from(pixels).map_err(|_| FigureError::Memory);
+    let mut encoder = None;
+    while let Some(picture) = pictures.next() {
+        let pixels = pixels(&picture, 1.0)?;
+        let (width, height) = (side(pixels.width())?, side(pixels.height())?);
+        let mut frame =
+            gif::Frame::from_rgba_speed(width, height, &mut pixels.take_demultiplied(), SPEED);
+        frame.delay = PAUSES[usize::from(pictures.peek().is_none())];
+        let encoder = match &mut encoder {
+            Some(encoder) => encoder,
+            None => {
+                let mut begun = gif::Encoder::new(&mut file, width, height, &[])?;
+                begun.set_repeat(gif::Repeat::Infinite)?;
+                encoder.insert(begun)
+            }
+        };
+        encoder.write_frame(&frame)?;
+    }
+    drop(encoder);
+    Ok(file)
+}
+
+/// The pixels of the picture, `scale` for each pixel of the SVG in each direction.
+fn pixels(svg: &Svg, scale: f32) -> Result<Pixmap, FigureError> {
     let (width, height) = (svg.width(), svg.height());
     if ![width, height].iter().all(|side| side.is_finite() && *side > 0.0) {
         return Err(FigureError::Size { width, height });
@@ -29,7 +70,7 @@ pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
     fonts.load_font_data(FONT_FILE.to_vec());
     let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
     let tree = Tree::from_str(&svg.document(), &options)?;
-    let size = tree.size().to_int_size().scale_by(SCALE);
+    let size = tree.size().to_int_size().scale_by(scale);
     let size = size.ok_or(FigureError::Memory)?;
     // Pixmap::new aborts where this fails.
     let pixels = (size.width() as usize).saturating_mul(size.height() as usize);
@@ -37,6 +78,6 @@ pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
         .try_reserve_exact(pixels.saturating_mul(4))
         .map_err(|_| FigureError::Memory)?;
     let mut pixels = Pixmap::new(size.width(), size.height()).ok_or(FigureError::Memory)?;
-    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
-    Ok(pixels.encode_png()?)
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    Ok(pixels)
 }

@@ -68,9 +68,10 @@ impl HybridFamily {
     ) -> PyResult<Self> {
         let (name, names) = names;
         let order = order.map(|(names, places)| RuleOrder { names, places });
-        let order = order.unwrap_or_else(|| RuleOrder::of(&system.0));
+        let order = order.unwrap_or_else(|| RuleOrder::of(&system.system));
         let (_, options) = settings.checked()?;
-        let family = SystemFamily::ordered(&system.0, order, axes, &parameters, (end, options));
+        let family =
+            SystemFamily::ordered(&system.system, order, axes, &parameters, (end, options));
         let family = family.map_err(bad_input)?;
         let guards = family.rules().to_vec();
         let names = RunNames { family: name, axes: names, guards };

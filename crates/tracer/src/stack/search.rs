@@ -63,8 +63,8 @@ pub(super) struct Search<'a, F: Family, At, E> {
     options: StackOptions,
     surveyor: Surveyor<'a, E>,
     watch: Watch<'a>,
-    /// The distance between the first value and the last one.
-    span: f64,
+    /// The first value and the last one.
+    range: [f64; 2],
     count: usize,
     cancelled: Cell<bool>,
     found: Vec<Found<F>>,
@@ -96,7 +96,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         options: StackOptions,
         surveyor: Surveyor<'a, E>,
         watch: Watch<'a>,
-        span: f64,
+        range: [f64; 2],
     ) -> Self {
         Self {
             family,
@@ -104,7 +104,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             options,
             surveyor,
             watch,
-            span,
+            range,
             count: 0,
             cancelled: Cell::new(false),
             found: Vec::new(),
@@ -161,7 +161,11 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
     /// The width of a bracket that is narrow enough, around a value.
     fn width(&self, low: f64, high: f64) -> f64 {
         let width = self.options.width * low.abs().max(high.abs());
-        if low <= 0.0 && 0.0 <= high { width.max(Lengths::PARTS.least * self.span) } else { width }
+        if low <= 0.0 && 0.0 <= high {
+            width.max(Lengths::PARTS.least * (self.range[1] - self.range[0]))
+        } else {
+            width
+        }
     }
 
     /// Finds the changes between two atlases that agree.
@@ -169,7 +173,11 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         let Some(differing) = low.structure.differing(&high.structure) else { return Ok(()) };
         if high.value - low.value <= self.width(low.value, high.value) {
             let mut change = Change::new([low, high], None, false);
-            if let Some((meeting, between)) = self.unseen(low, high, &change.effects, &differing) {
+            change.meeting = self.enclosed([low, high], &differing);
+            if change.meeting.is_none()
+                && let Some((meeting, between)) =
+                    self.unseen(low, high, &change.effects, &differing)
+            {
                 (change.meeting, change.between) = (Some(meeting), between);
             }
             self.found.push((change, high.structure.clone()));
@@ -193,7 +201,8 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         differing: &[Vec<usize>; 2],
         reach: Reach,
     ) -> Searched<bool, F> {
-        for meeting in self.meetings([low, high], differing, reach) {
+        let between = [low.value, high.value];
+        for meeting in self.meetings([low, high], differing, between, reach) {
             if self.isolated(low, high, &meeting, reach)? {
                 return Ok(true);
             }
@@ -201,17 +210,17 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         Ok(false)
     }
 
-    /// Where points may meet between two atlases, each value once.
+    /// Where points of two atlases may meet between two values, each value once.
     fn meetings(
         &self,
         ends: [&Sample<F>; 2],
         differing: &[Vec<usize>; 2],
+        values: [f64; 2],
         reach: Reach,
     ) -> Vec<Meeting> {
         /// The number of candidates of each atlas that are tried, and of solutions.
         const TRIED: usize = 60;
         const SOLVED: usize = 4;
-        let values = ends.map(|sample| sample.value);
         let within = Box3 { window: self.window, values };
         let near = self.width(values[0], values[1]);
         let (mut tried, mut vague) = (Vec::new(), Vec::new());
@@ -351,6 +360,22 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         }
         self.push([low, high], None, true);
         Ok(())
+    }
+
+    /// The meeting between two atlases that differ and are as close to each other as those beside a
+    /// meeting are. It may be one beside which atlases were in doubt before.
+    fn enclosed(&self, ends: [&Sample<F>; 2], differing: &[Vec<usize>; 2]) -> Option<Meeting> {
+        /// How much farther it is looked for, in widths: differences of values close to each other
+        /// are too inaccurate.
+        const AROUND: f64 = 1000.0;
+        let [low, high] = ends.map(|sample| sample.value);
+        let is_between = |meeting: &Meeting| low < meeting.value && meeting.value < high;
+        let in_doubt = self.tried.iter().filter(|tried| tried.around.is_none());
+        let before = in_doubt.map(|tried| tried.meeting).find(is_between);
+        let around = AROUND * self.width(low, high);
+        let values = [(low - around).max(self.range[0]), (high + around).min(self.range[1])];
+        let again = || self.meetings(ends, differing, values, Reach::Close);
+        before.or_else(|| again().into_iter().find(is_between))
     }
 
     /// A meeting beside a change that atlases have enclosed, and the bracket that holds both: a

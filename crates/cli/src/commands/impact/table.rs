@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use stickslip_model::{Engine, ForceSwitch, ImpactReport, Vector3};
 use stickslip_solver::Statistics;
 
-use crate::output::text::{aligned, describe, law, number, pairs, work};
+use crate::output::text::{aligned, describe, explained, law, number, pairs, work};
 
 /// Writes `impact` as tables.
 ///
@@ -102,7 +102,7 @@ fn results(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
             ("contact time [s]", number(outcome.contact_time_s)),
             ("switches", outcome.switches.len().to_string()),
             ("reversals of the motion", impact.reversals().to_string()),
-            ("itinerary", impact.itinerary()),
+            ("itinerary", explained(&impact.itinerary())),
         ],
     )?;
     writeln!(out)
