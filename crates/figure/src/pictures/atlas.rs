@@ -67,7 +67,7 @@ pub fn draw(atlas: &Atlas) -> Svg {
     vertices(&mut svg, atlas, &panel, &mut legend);
     labels(&mut svg, atlas, &panel);
     let lines: Vec<_> = boundaries.into_iter().map(|(_, points)| points).collect();
-    let parameters = |point: &Point| atlas.chart.parameters(point).into();
+    let parameters = |point: &Point| atlas.plane.chart().parameters(point).into();
     regions::hints(&mut svg, &panel, &atlas.regions, &lines, parameters, |region| {
         let itinerary = atlas.itinerary(region);
         let count = switch_count(itinerary);
@@ -133,6 +133,6 @@ fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
     let text = |region: usize| switch_count(atlas.itinerary(region)).to_string();
     let samples = atlas.regions.regions().iter();
     let samples: Vec<_> =
-        samples.map(|region| atlas.chart.parameters(&region.sample).into()).collect();
+        samples.map(|region| atlas.plane.chart().parameters(&region.sample).into()).collect();
     regions::labels(svg, panel, region, &samples, text);
 }

@@ -65,7 +65,7 @@ pub fn draw_impact(report: &ImpactReport, history: &History) -> Svg {
 fn panels(title: &str, course: &Course<'_>, [force, time, speed]: [&str; 3]) -> Svg {
     let mut svg = Svg::new(WIDTH, HEIGHT, title);
     svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
-    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(course), "F_t/μ, w");
+    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(course));
 
     let forces = course.forces(&mut svg, FORCES, course.largest_force());
     forces.ticks(&mut svg, Edge::Left, true);
