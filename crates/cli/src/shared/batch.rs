@@ -41,7 +41,8 @@ pub struct BatchArguments {
     #[arg(long, value_name = "EV.csv", help_heading = "Batch", requires = "batch")]
     pub events: Option<PathBuf>,
 
-    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend on it
+    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend
+    /// on it
     #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
     #[arg(value_parser = threads::threads())]
     pub threads: Option<u16>,

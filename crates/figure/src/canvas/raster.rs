@@ -31,29 +31,27 @@ pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
 /// one pixel for each pixel of the SVG.
 ///
 /// # Errors
-/// As [`png`]. [`FigureError::Gif`]: there are pictures of several sizes, or larger ones than GIF
-/// allows.
+/// As [`png`], also without a picture or if GIF does not allow the size. [`FigureError::Gif`]: a
+/// picture is larger than the first one.
 pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureError> {
     /// How hard 256 colours are looked for, from 1, the best, to 30.
     const SPEED: i32 = 10;
-    let mut file = Vec::new();
-    let mut pictures = pictures.into_iter().peekable();
+    let mut pictures = pictures.into_iter().map(|picture| pixels(&picture, 1.0));
+    let Some(first) = pictures.next().transpose()? else {
+        return Err(FigureError::Size { width: 0.0, height: 0.0 });
+    };
     let side = |pixels: u32| u16::try_from(pixels).map_err(|_| FigureError::Memory);
-    let mut encoder = None;
-    while let Some(picture) = pictures.next() {
-        let pixels = pixels(&picture, 1.0)?;
+    let (width, height) = (side(first.width())?, side(first.height())?);
+    let mut file = Vec::new();
+    let mut encoder = gif::Encoder::new(&mut file, width, height, &[])?;
+    encoder.set_repeat(gif::Repeat::Infinite)?;
+    let mut next = Some(first);
+    while let Some(pixels) = next {
+        next = pictures.next().transpose()?;
         let (width, height) = (side(pixels.width())?, side(pixels.height())?);
-        let mut frame =
-            gif::Frame::from_rgba_speed(width, height, &mut pixels.take_demultiplied(), SPEED);
-        frame.delay = PAUSES[usize::from(pictures.peek().is_none())];
-        let encoder = match &mut encoder {
-            Some(encoder) => encoder,
-            None => {
-                let mut begun = gif::Encoder::new(&mut file, width, height, &[])?;
-                begun.set_repeat(gif::Repeat::Infinite)?;
-                encoder.insert(begun)
-            }
-        };
+        let mut pixels = pixels.take_demultiplied();
+        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut pixels, SPEED);
+        frame.delay = PAUSES[usize::from(next.is_none())];
         encoder.write_frame(&frame)?;
     }
     drop(encoder);
