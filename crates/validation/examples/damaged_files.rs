@@ -1,8 +1,8 @@
 //! Files with random damage: none may be read as another result than was written.
 //!
 //! Each file is changed at up to four places: a byte is replaced, removed or repeated, a digit
-//! becomes another one, a piece is removed, repeated or moved, or the end is cut off. The reader may
-//! refuse it, or read what was written: spaces and the spelling of numbers do not matter.
+//! becomes another one, a piece is removed, repeated or moved, or the end is cut off. The reader
+//! may refuse it, or read what was written: spaces and the spelling of numbers do not matter.
 
 use std::error::Error;
 use std::fmt::Debug;

@@ -41,7 +41,8 @@ pub struct BatchArguments {
     #[arg(long, value_name = "EV.csv", help_heading = "Batch", requires = "batch")]
     pub events: Option<PathBuf>,
 
-    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend on it
+    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend
+    /// on it
     #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
     #[arg(value_parser = threads::threads())]
     pub threads: Option<u16>,
@@ -61,9 +62,18 @@ impl BatchArguments {
     /// The files that the options name, beside other inputs; `None` without a batch.
     ///
     /// # Errors
-    /// [`Failure::Usage`]: an output is an input, or the other output.
+    /// [`Failure::Usage`]: an output is an input, or the other output, or there is no batch for it.
     pub fn files(&self, inputs: &[Named]) -> Result<Option<BatchFiles<'_>>, Failure> {
-        let Some(input) = &self.batch else { return Ok(None) };
+        let Some(input) = &self.batch else {
+            // Beside an argument that excludes --batch, the parser does not ask for it.
+            let given = [("--out", self.out.is_some()), ("--events", self.events.is_some())];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((option, _)) => Err(Failure::Usage(format!(
+                    "{option} has no effect without --batch; expected both"
+                ))),
+                None => Ok(None),
+            };
+        };
         let out = self.out.as_deref().unwrap_or(Path::new(STANDARD_OUTPUT));
         let inputs = [&[("--batch", Some(&**input))], inputs].concat();
         let events = self.events.as_deref();

@@ -19,7 +19,8 @@ const VARIABLE: &str = "RAYON_NUM_THREADS";
 /// On how many threads the work runs.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct ThreadsArguments {
-    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend on it
+    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend
+    /// on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
     #[arg(value_parser = threads())]
     pub threads: Option<u16>,

@@ -169,8 +169,9 @@ fn ignored_signals() -> u64 {
 
 /// What the system reports, without the hidden name that is added to it.
 fn plain(error: &io::Error) -> io::Error {
-    let named = error.get_ref().and_then(|named| named.source());
-    let system = named.and_then(|source| source.downcast_ref::<io::Error>());
-    let number = system.and_then(io::Error::raw_os_error);
-    number.map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
+    let text = error.to_string();
+    match text.split_once(" at path ") {
+        Some((system, _)) => io::Error::new(error.kind(), system),
+        None => error.kind().into(),
+    }
 }
