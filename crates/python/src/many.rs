@@ -9,7 +9,6 @@ use stickslip_plane::progress::{Progress, Report};
 use stickslip_solver::{DynamicRun, DynamicSwitch};
 
 use crate::background::watched;
-use crate::failure::bad_input;
 use crate::formulas::{FormulaSystem, Settings, word};
 
 /// Runs a system with many parameters, one row of `parameters` for each run, and from many

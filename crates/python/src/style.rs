@@ -3,7 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_figure::canvas::shape::Stroke;
-use stickslip_figure::style::{self, COLOURS, KINDS, PLACES};
+use stickslip_figure::style as drawn;
+use stickslip_figure::style::{COLOURS, KINDS, PLACES};
 
 /// Colours in maps of colours.
 const SHADES: u8 = 255;
@@ -17,20 +18,20 @@ pub fn style(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         entries.into_iter().try_for_each(|(name, line)| dictionary.set_item(name, line))?;
         Ok(dictionary)
     };
-    let boundaries = KINDS.map(|(kind, name, _)| (name, line(style::boundary(kind))));
+    let boundaries = KINDS.map(|(kind, name, _)| (name, line(drawn::boundary(kind))));
     let places = PLACES
         .iter()
         .flat_map(|(names, _, stroke)| names.iter().map(|name| (*name, line(*stroke))));
     let part = |shade: u8| f64::from(shade) / f64::from(SHADES);
-    let diverging = (0..=SHADES).map(|shade| style::hex(style::diverging(2.0 * part(shade) - 1.0)));
+    let diverging = (0..=SHADES).map(|shade| drawn::hex(drawn::diverging(2.0 * part(shade) - 1.0)));
     let growing = (0..=SHADES)
-        .map(|shade| style::hex(style::ordered(usize::from(shade), usize::from(SHADES) + 1)));
+        .map(|shade| drawn::hex(drawn::ordered(usize::from(shade), usize::from(SHADES) + 1)));
     let all = PyDict::new(py);
     all.set_item("colours", COLOURS.to_vec())?;
-    all.set_item("rule", style::RULE.colour)?;
+    all.set_item("rule", drawn::RULE.colour)?;
     all.set_item("boundaries", dictionary(boundaries.to_vec())?)?;
     all.set_item("places", dictionary(places.collect())?)?;
-    let phases = [("+", style::SLIP_POSITIVE), ("o", style::STICK), ("-", style::SLIP_NEGATIVE)];
+    let phases = [("+", drawn::SLIP_POSITIVE), ("o", drawn::STICK), ("-", drawn::SLIP_NEGATIVE)];
     all.set_item("phases", phases.to_vec())?;
     all.set_item("diverging", diverging.collect::<Vec<_>>())?;
     all.set_item("growing", growing.collect::<Vec<_>>())?;

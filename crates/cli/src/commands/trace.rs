@@ -10,7 +10,7 @@ use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Document, Frame, VerifiedAtlas, geojson};
+use stickslip_plane::atlas::{self, Atlas, Document, Frame, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{Surveyor, Watch};
@@ -140,8 +140,8 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
 }
 
 /// What was found, in a sentence.
-fn found(VerifiedAtlas { atlas, report, .. }: &VerifiedAtlas) -> String {
-    let all = boundaries_and_regions(atlas.regions.curves().len(), atlas.regions.regions().len());
+fn found(Atlas { regions, report, .. }: &Atlas) -> String {
+    let all = boundaries_and_regions(regions.curves().len(), regions.regions().len());
     let points = report.tried;
     let verified = if report.agrees { "verified" } else { "not all confirmed" };
     format!("{all}, {verified} at {points} points")
