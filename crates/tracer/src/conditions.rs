@@ -23,8 +23,11 @@ pub struct Limits {
     pub stride: f64,
     /// An update no longer than this ends the search.
     pub tolerance: f64,
-    /// The error of a value. An update within ten times the error that it causes ends the search if
-    /// it is not much shorter than the update before, as does one within ten tolerances.
+    /// An update no longer than this ends the search if it is not much shorter than the update
+    /// before: what is left are errors of the values.
+    pub stalled: f64,
+    /// The error of a value. Ten times the error of the place that it causes counts as `stalled`
+    /// if that is longer.
     pub noise: f64,
     /// An update no longer than this ends the search if it is shorter than a tenth of the update
     /// before. Updates then shrink as their square, and the next one is beyond the digits.
@@ -34,6 +37,8 @@ pub struct Limits {
     /// Where the values do not exist, half of the update is taken back, unless it is no longer than
     /// this.
     pub retreat: f64,
+    /// The greatest number of places.
+    pub rounds: usize,
 }
 
 impl Limits {
@@ -42,7 +47,8 @@ impl Limits {
     #[must_use]
     pub const fn new(reach: f64, tolerance: f64) -> Self {
         let (stride, retreat) = (f64::INFINITY, f64::INFINITY);
-        Self { reach, stride, tolerance, noise: 0.0, square: 0.0, reuse: 0.0, retreat }
+        let (stalled, noise, square, reuse) = (0.0, 0.0, 0.0, 0.0);
+        Self { reach, stride, tolerance, stalled, noise, square, reuse, retreat, rounds: 40 }
     }
 }
 
@@ -103,32 +109,31 @@ where
 ///     let slopes = Matrix2::new(2.0 * at.x, 2.0 * at.y, at.y, at.x);
 ///     Ok::<_, Infallible>(Some((values, Some(slopes))))
 /// };
-/// let zero = solve(Vector2::new(2.5, 4.2), &Limits::new(1.0, 1e-12), crossing)?;
+/// let zero = solve(&Vector2::new(2.5, 4.2), &Limits::new(1.0, 1e-12), crossing)?;
 /// let zero = zero.expect("they cross");
 /// assert!((zero.at - Vector2::new(3.0, 4.0)).norm() <= zero.error);
 /// // From here it is farther away than the search may lead.
-/// assert!(solve(Vector2::new(2.0, 4.2), &Limits::new(0.1, 1e-12), crossing)?.is_err());
+/// assert!(solve(&Vector2::new(2.0, 4.2), &Limits::new(0.1, 1e-12), crossing)?.is_err());
 /// # Ok::<(), Infallible>(())
 /// ```
 ///
 /// # Errors
 /// The conditions cannot be computed at a place.
 pub fn solve<D: Dim, E>(
-    start: OVector<f64, D>,
+    start: &OVector<f64, D>,
     limits: &Limits,
     mut conditions: impl FnMut(&mut OVector<f64, D>, bool) -> Result<Option<Local<D>>, E>,
 ) -> Result<Result<Zero<D>, Unsolved<D>>, E>
 where
     DefaultAllocator: Allocator<D> + Allocator<D, D>,
 {
-    /// The greatest number of places. Updates that only halve have shrunk by 1e-12 then.
-    const ROUNDS: usize = 40;
     let mut before = start.clone();
     let mut at = start.clone();
-    let mut update = &start - &start;
+    let mut update = start.clone();
+    update.fill(0.0);
     let mut size = f64::INFINITY;
     let mut linear = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..limits.rounds {
         let free = at.clone();
         let found = conditions(&mut at, linear.is_none())?;
         if at != free {
@@ -157,14 +162,15 @@ where
         update *= (limits.stride / size).min(1.0);
         before.copy_from(&at);
         at -= &update;
-        let within = (&at - &start).norm() <= limits.reach;
+        let within = (&at - start).norm() <= limits.reach;
         if !within {
             return Ok(Err(Unsolved::Leaves));
         }
-        let error = 10.0 * limits.tolerance.max(limits.noise * inverse.norm());
-        let is_noise = size <= error && size >= 0.5 * last;
+        let noise = 10.0 * (limits.noise * inverse.norm());
+        let is_noise = size <= limits.stalled.max(noise) && size >= 0.5 * last;
         let is_square = size <= limits.square && size < 0.1 * last && last.is_finite();
         if size <= limits.tolerance || is_noise || is_square {
+            let error = noise.max(10.0 * limits.tolerance);
             return Ok(Ok(Zero { at, error, slopes: slopes.clone() }));
         }
         let is_fast = size <= limits.reuse * last;

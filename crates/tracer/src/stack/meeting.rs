@@ -115,9 +115,9 @@ fn newton<F: Family>(
     within: &Box3,
 ) -> Option<Solved<F::Margin>> {
     let Lengths { half, least, .. } = Lengths::PARTS;
-    let limits =
-        Limits { stride: STRIDE, square: half, retreat: half, ..Limits::new(f64::INFINITY, least) };
-    let Ok(found) = conditions::solve(start, &limits, |at, _| {
+    let limits = Limits::new(f64::INFINITY, least);
+    let limits = Limits { stride: STRIDE, square: half, retreat: half, rounds: 30, ..limits };
+    let Ok(found) = conditions::solve(&start, &limits, |at, _| {
         at.z = at.z.clamp(0.0, 1.0);
         if !Box3::is_defined(at) {
             return Ok::<_, Infallible>(None);

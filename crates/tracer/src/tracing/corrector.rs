@@ -105,11 +105,17 @@ pub(crate) fn crossing<F: Family>(
 ) -> Traced<Option<(Point, f64)>, F> {
     let TraceOptions { tolerance, noise, .. } = runs.options;
     let last = runs.lengths.half;
-    let limits = Limits { noise, reuse: 0.01, retreat: last, ..Limits::new(reach, tolerance) };
+    let stalled = 10.0 * tolerance;
+    let limits = Limits::new(reach, tolerance);
+    let limits = Limits { stalled, noise, reuse: 0.01, retreat: last, ..limits };
     let mut sine = 0.0;
-    let found: Traced<_, F> = solve(*guess, &limits, |at, steep| {
+    let found: Traced<_, F> = solve(guess, &limits, |at, steep| {
         let values = margins.map(|margin| runs.margin(at, margin));
-        let [Some(one), Some(two)] = both(values)? else { return Ok(None) };
+        let [Some(one), Some(two)] = both(values)? else {
+            // Between boundaries that nearly touch, no way leads back.
+            let apart = sine >= angle::TRANSVERSAL;
+            return Ok((!apart).then(|| (Point::repeat(f64::NAN), None)));
+        };
         let values = Point::new(one, two);
         if !steep {
             return Ok(Some((values, None)));
@@ -122,7 +128,7 @@ pub(crate) fn crossing<F: Family>(
     });
     Ok(match found? {
         Ok(Zero { at, error, .. }) => Some((at, error)),
-        Err(Unsolved::Ceases { at, update }) if update <= last && sine >= angle::TRANSVERSAL => {
+        Err(Unsolved::Ceases { at, update }) if update <= last => {
             Some((at, update.max(10.0 * tolerance)))
         }
         Err(_) => None,
@@ -146,8 +152,8 @@ pub(crate) fn stationary<F: Family>(
     reach: f64,
 ) -> Traced<Option<Point>, F> {
     let (mut h, mut last) = (spread, None);
-    let limits = Limits::new(reach, runs.options.tolerance);
-    let zero: Traced<_, F> = solve(*guess, &limits, |at, _| {
+    let limits = Limits { rounds: 60, ..Limits::new(reach, runs.options.tolerance) };
+    let zero: Traced<_, F> = solve(guess, &limits, |at, _| {
         if let Some(last) = last.replace(*at) {
             h = (0.1 * (*at - last).norm()).min(h);
         }

@@ -12,7 +12,7 @@ fn zero(
     start: f64,
     limits: &Limits,
 ) -> Result<Zero<U1>, Unsolved<U1>> {
-    let Ok(found) = solve(Vector1::new(start), limits, |at, _| {
+    let Ok(found) = solve(&Vector1::new(start), limits, |at, _| {
         let values = value(at.x).map(Vector1::new);
         Ok::<_, Infallible>(values.map(|values| (values, Some(Vector1::new(slope(at.x))))))
     });
@@ -75,7 +75,7 @@ fn half_an_update_leads_back() {
 #[test]
 fn a_bound_holds_a_search() {
     let held = |bound: f64| {
-        let Ok(found) = solve(Vector1::new(1.0), &wide(), |at, _| {
+        let Ok(found) = solve(&Vector1::new(1.0), &wide(), |at, _| {
             at.x = at.x.min(bound);
             let local = (Vector1::new(at.x * at.x - 4.0), Some(Vector1::new(2.0 * at.x)));
             Ok::<_, Infallible>(Some(local))
@@ -92,7 +92,7 @@ fn the_number_of_unknowns_may_be_known_at_run_time() {
     for number in [1, 2, 3, 7] {
         let squares = DVector::from_fn(number, |row, _| (row + 1) as f64);
         let start = DVector::repeat(number, 1.5);
-        let Ok(found) = solve(start, &wide(), |at: &mut DVector<f64>, _| {
+        let Ok(found) = solve(&start, &wide(), |at: &mut DVector<f64>, _| {
             let slopes = DMatrix::from_diagonal(&(2.0 * &*at));
             Ok::<_, Infallible>(Some((at.component_mul(at) - &squares, Some(slopes))))
         });
@@ -106,7 +106,7 @@ fn derivatives_are_used_again_while_updates_shrink_fast() {
     let found = |reuse: f64| {
         let mut asked = 0;
         let limits = Limits { reuse, ..wide() };
-        let Ok(found) = solve(Vector2::new(0.9, 0.9), &limits, |at, steep| {
+        let Ok(found) = solve(&Vector2::new(0.9, 0.9), &limits, |at, steep| {
             let values = *at + 1e-3 * Vector2::new(at.y * at.y, at.x * at.x) - Vector2::repeat(1.0);
             asked += usize::from(steep);
             let slopes = steep.then(|| Matrix2::new(1.0, 2e-3 * at.y, 2e-3 * at.x, 1.0));

@@ -191,10 +191,10 @@ impl<F: Family> Root<'_, F> {
 
     /// The zero of m₀ by the secant method.
     fn zero(&self, near: f64) -> Traced<Option<f64>, F> {
-        let Lengths { scale, piece, touch, solved, .. } = self.runs.lengths;
+        let Lengths { scale, piece, touch, same, .. } = self.runs.lengths;
         let mut before = None;
-        let limits = Limits::new(0.1 * scale, solved);
-        let zero: Traced<_, F> = solve(Vector1::zeros(), &limits, |at, _| {
+        let limits = Limits { stalled: same, rounds: 20, ..Limits::new(0.1 * scale, 0.01 * same) };
+        let zero: Traced<_, F> = solve(&Vector1::zeros(), &limits, |at, _| {
             let Some(value) = self.limit(at.x, near)? else { return Ok(None) };
             let mut slope = secant(&mut before, at.x, value);
             // The margin may exist on one side only.

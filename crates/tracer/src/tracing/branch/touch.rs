@@ -133,6 +133,9 @@ fn dip<F: Family>(
 /// step.
 const FAR: f64 = 10.0;
 
+/// A slope that counts as none.
+const FLAT: f64 = 1e-100;
+
 /// After this many updates the angle between boundaries that touch is at most half of the first
 /// angle.
 const UPDATES: usize = 5;
@@ -159,7 +162,7 @@ fn parallel<F: Family>(
     };
     let (mut before, mut first, mut probes) = (None, 0.0, 0);
     let mut last: Option<(f64, Probe)> = None;
-    let found: Traced<_, F> = solve(Vector1::new(start[0]), &search, |at, _| {
+    let found: Traced<_, F> = solve(&Vector1::new(start[0]), &search, |at, _| {
         at.x = at.x.clamp(limits[0], limits[1]);
         let guess = place(at.x);
         let Some(found) = correct(runs, &track.margin, &guess, &near.gradient, reach)? else {
@@ -187,6 +190,8 @@ fn parallel<F: Family>(
         // The first update leads to the second place.
         let to_second = if sine == 0.0 { 1.0 } else { sine / (start[0] - start[1]) };
         let turn = secant(&mut before, at.x, sine).unwrap_or(to_second);
+        // Where the angle does not change, the update leads as far as it may.
+        let turn = if turn == 0.0 { FLAT.copysign(turn) } else { turn };
         Ok(Some((Vector1::new(sine), (!hopeless).then(|| Vector1::new(turn)))))
     });
     let exists = matches!(found?, Ok(_) | Err(Unsolved::Ceases { .. }));
