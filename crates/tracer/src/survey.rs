@@ -7,6 +7,7 @@ use crate::family::Family;
 use crate::options::TraceOptions;
 use crate::regions::finding::SubdivisionError;
 use crate::tracing::extrema::Extremum;
+use crate::tracing::state::State;
 use crate::tracing::tracer::Tracer;
 use crate::watch::Watch;
 use crate::window::{Point, Window};
@@ -210,7 +211,11 @@ impl<E> Surveyor<'_, E> {
             None => self.unverified(draft, tracer, round)?.0,
         };
         if !finished {
-            atlas.unfinished = Some(Box::new(tracer.state().drawn(draft)));
+            let State { network, uncertainties, suspects, probed, stage, brackets } =
+                tracer.state();
+            let network = draft.drawn(network);
+            atlas.unfinished =
+                Some(Box::new(State { network, uncertainties, suspects, probed, stage, brackets }));
         }
         Ok(atlas)
     }

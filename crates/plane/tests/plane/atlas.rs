@@ -294,7 +294,7 @@ fn damped_grazes_end_in_cusps() {
     let damping = 0.41;
     let verified = traced(Frame { damping, ..frame((1.3, 1.9), (0.6, 1.0)) });
     assert_eq!(verified.objection(), None, "{:?}", verified.report);
-    let (regions, chart) = (&verified.regions, &verified.plane.chart());
+    let (regions, chart) = (&verified.regions, verified.plane.chart());
     let ends_of = |kind: BoundaryKind| {
         let curves = regions.curves().iter().filter(move |curve| curve.margin == kind);
         curves.filter_map(|curve| curve.ends).flatten().collect::<Vec<_>>()

@@ -39,6 +39,7 @@ pub enum Effect<Label> {
 
 impl<Label> Effect<Label> {
     /// The same effect with another label.
+    #[must_use]
     pub fn map<L>(&self, label: impl Fn(&Label) -> L) -> Effect<L> {
         match self {
             Self::Born(own) => Effect::Born(label(own)),
@@ -90,6 +91,7 @@ impl<Label> Change<Label> {
     }
 
     /// The same change with other labels.
+    #[must_use]
     pub fn map<L>(&self, label: impl Fn(&Label) -> L) -> Change<L> {
         let Self { between, meeting, doubtful, effects } = self;
         let effects = effects.iter().map(|effect| effect.map(&label)).collect();

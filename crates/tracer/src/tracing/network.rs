@@ -86,6 +86,7 @@ pub enum Unresolved<Label> {
 
 impl<Label, Margin> Network<Label, Margin> {
     /// The same network with other labels and margins.
+    #[must_use]
     pub fn map<L, M>(
         self,
         label: impl Fn(&Label) -> L,

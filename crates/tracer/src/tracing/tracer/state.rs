@@ -1,6 +1,5 @@
 //! What a tracer must remember to go on later.
 
-use crate::draft::Draft;
 use crate::family::Family;
 use crate::tracing::network::Network;
 use crate::tracing::tracer::stage::Stage;
@@ -22,18 +21,6 @@ pub(crate) struct State<Label, Margin> {
     /// Where the tracer has to look again, if it has explored the window and a verification
     /// disagreed.
     pub brackets: Option<Vec<[Point; 2]>>,
-}
-
-impl<Label, Margin> State<Label, Margin> {
-    /// The same state with the network of a draft.
-    pub fn drawn<D>(self, draft: &D) -> State<D::Label, D::Margin>
-    where
-        D: Draft<Family: Family<Label = Label, Margin = Margin>>,
-    {
-        let Self { network, uncertainties, suspects, probed, stage, brackets } = self;
-        let network = draft.drawn(network);
-        State { network, uncertainties, suspects, probed, stage, brackets }
-    }
 }
 
 /// The state of a family's tracer.
