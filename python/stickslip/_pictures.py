@@ -70,13 +70,13 @@ def _shade(found: Collision, ax: Axes) -> None:
     ends = np.concatenate([[0.0], found.switches["time"], [found.contact_time]])
     kinds = np.array(list(found.itinerary))
     # Edges tell white phases from the ground in the legend, and mark the switches.
-    edge = {"edgecolor": RULE, "linewidth": 0.4}
+    edge: dict[str, Any] = {"edgecolor": RULE, "linewidth": 0.4}
     for kind, name in _PHASES.items():
         (places,) = np.nonzero(kinds == kind)
         spans = list(zip(ends[places], np.diff(ends)[places], strict=True))
         if spans:
             whole = ax.get_xaxis_transform()
-            style = {"facecolor": PHASES[kind], "zorder": 0, "label": name} | edge
+            style: dict[str, Any] = {"facecolor": PHASES[kind], "zorder": 0, "label": name} | edge
             ax.broken_barh(spans, (0, 1), transform=whole, **style)
 
 

@@ -3,7 +3,8 @@
 //! The functions of [`pictures`] draw whole pictures from data: a [collision](pictures::collision),
 //! a [gallery](pictures::gallery) of many, a [map](pictures::map), a computed
 //! [grid](pictures::grid), an [atlas](pictures::atlas), a [chart](pictures::chart) of series; with
-//! the features `practice` and `studies` also a fit, errors of time steps, and studies. Each results in an [`Svg`], whose document is a file, and [`png()`] makes the same picture as PNG.
+//! the features `practice` and `studies` also a fit, errors of time steps, and studies. Each
+//! results in an [`Svg`], whose document is a file, and [`png()`] makes the same picture as PNG.
 //!
 //! Pictures are made of the parts in [`canvas`]. Start reading in [`canvas::panel`] (axes, and what
 //! is drawn against them), then [`pictures::course`] and [`pictures::collision`] (a picture).

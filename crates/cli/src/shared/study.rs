@@ -13,7 +13,8 @@ use super::threads::ThreadsArguments;
 use crate::error::Failure;
 use crate::output::console::{print, say};
 
-/// Makes a study with its pictures, writes its files into the directory `out`, and prints its findings.
+/// Makes a study with its pictures, writes its files into the directory `out`, and prints its
+/// findings.
 ///
 /// # Errors
 /// Files cannot be written, which is tried first, or `make` fails.

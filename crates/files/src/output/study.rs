@@ -9,7 +9,8 @@ use stickslip_studies::{Cell, Study, Table};
 use super::file::write;
 use crate::error::FileError;
 
-/// Writes all files of `study` and its `pictures` into `directory`, each of them at once or not at all.
+/// Writes all files of `study` and its `pictures` into `directory`, each of them at once or not at
+/// all.
 ///
 /// # Errors
 /// [`FileError::Output`]: a file cannot be written.
