@@ -7,8 +7,8 @@ use crate::family::Family;
 use crate::options::TraceOptions;
 use crate::regions::finding::SubdivisionError;
 use crate::tracing::extrema::Extremum;
-use crate::tracing::state::State;
 use crate::tracing::tracer::Tracer;
+use crate::tracing::tracer::state::State;
 use crate::watch::Watch;
 use crate::window::{Point, Window};
 
