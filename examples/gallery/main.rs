@@ -172,8 +172,14 @@ fn compare(
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
     let title =
         format!("{name}: {curves} boundaries, {regions} regions with their number of events");
-    let captions =
-        Captions { title: &title, axes: *axes, kinds: &KINDS, kind: &kind, text: &number };
+    let captions = Captions {
+        title: &title,
+        axes: *axes,
+        kinds: &KINDS,
+        kind: &kind,
+        text: &number,
+        hint: &number,
+    };
     Ok(Row {
         curves,
         regions,

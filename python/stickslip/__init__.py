@@ -220,6 +220,7 @@ _MODULES = {
     "many": "solve_many",
     "maps": "map",
     "stacks": "Change Layer Stack stack",
+    "style": "",
     "studies": "Study Table asymptote contact_laws converge reproduce reproduction_parts",
     "sweeps": "sweep write_sweep",
     "tables": "RestitutionTable VelocityTable load_table table table_of_velocities",

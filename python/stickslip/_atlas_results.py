@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip._axes import COLOURS, GREY, MARKERS, legend, one
+from stickslip._axes import MARKERS, legend, one
 from stickslip._tabular import Columns
+from stickslip.style import COLOURS, RULE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stickslip._family_atlases import FamilyAtlas
-    from stickslip.atlases import Atlas
     from stickslip.family_stacks import FamilyStack
     from stickslip.stacks import Stack
 
@@ -33,7 +32,7 @@ def stack(
     for change in found.changes:
         low, high = change.between
         dash = ":" if change.doubtful else "-"
-        ax.axvline((low + high) / 2, color=GREY, linewidth=0.8, linestyle=dash, zorder=0)
+        ax.axvline((low + high) / 2, color=RULE, linewidth=0.8, linestyle=dash, zorder=0)
     for number, effect in enumerate(_EFFECTS):
         where = [
             sum(change.between) / 2
@@ -59,7 +58,7 @@ def _regions(layer: Any) -> int:
     return len(layer.atlas.regions) if own is None else sum(own.values())
 
 
-def regions(atlas: Atlas | FamilyAtlas) -> Columns:
+def regions(atlas: Any) -> Columns:
     """A row for each region: its itinerary, its area, and a point inside."""
     rows: list[Any] = list(atlas.regions)
     samples = np.array([row.sample for row in rows], dtype=float).reshape(-1, 2)

@@ -16,13 +16,8 @@ if TYPE_CHECKING:
 #: What a picture with several panels takes: its panels, one that holds all of them, or none.
 Panels: TypeAlias = "Axes | Sequence[Axes] | None"
 
-#: Colours that colour-blind readers can tell apart (Okabe and Ito 2008), without yellow.
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#333333")
 DASHES = ("-", "--", "-.", ":")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-GREY = "#777777"
-#: A map of colours for quantities around 0, and one for numbers from small to large.
-DIVERGING, GROWING = "PuOr", "cividis"
 #: Lines with more points are pixels in SVG documents.
 _MOST_POINTS = 20_000
 

@@ -29,10 +29,10 @@ class Compiled:
     function of ctypes, or the address of the code. parameters: numbers that are copied, and passed
     with each call.
 
-    What is at an address cannot be checked. Another signature, or a function that reads or writes
-    beyond its arrays, ends in wrong numbers or in a crash of the interpreter. The function may be
-    called by any thread, and by several at once. It cannot raise an exception; NaN says that there
-    is no value.
+    What is at an address cannot be checked; the types that Numba, SciPy or ctypes declare are.
+    Another signature, or a function that reads or writes beyond its arrays, ends in wrong numbers
+    or in a crash of the interpreter. The function may be called by any thread, and by several at
+    once. It cannot raise an exception; NaN says that there is no value.
     """
 
     #: What `solve` asks of an event.
@@ -83,6 +83,25 @@ _POINTER = r"(const)?(double|float64|void)\*(const)?"
 _SIGNATURE = re.compile(rf"void\((double|float64),{_POINTER},{_POINTER},{_POINTER}\)")
 
 
+def _signature_of_ctypes(function: Any) -> str | None:
+    """The signature that a function of ctypes declares, if it does.
+
+    Without a declaration ctypes takes the result to be an int, which says nothing.
+    """
+    if function.argtypes is None:
+        return None
+    names: dict[Any, str] = {ctypes.c_double: "double", ctypes.c_void_p: "void*", None: "void"}
+    names[ctypes.POINTER(ctypes.c_double)] = "double*"
+
+    def name(one: Any) -> str:
+        # NumPy's ndpointer says what it points to.
+        dtype = getattr(one, "_dtype_", None)
+        return f"{dtype}*" if dtype is not None else names.get(one, str(one))
+
+    result = "void" if function.restype is ctypes.c_int else name(function.restype)
+    return f"{result} ({', '.join(name(one) for one in function.argtypes)})"
+
+
 def _code_of(function: Any) -> tuple[int, int, str | None]:
     """The addresses of a function and of its parameters, or 0, and its signature, if it has one."""
     if isinstance(function, int) and not isinstance(function, bool):
@@ -102,7 +121,8 @@ def _code_of(function: Any) -> tuple[int, int, str | None]:
         )(capsule)
         return int(pointer), int(context or 0), name.decode()
     if isinstance(function, _FUNCTION_OF_CTYPES):
-        return int(ctypes.cast(function, ctypes.c_void_p).value or 0), 0, None
+        code = int(ctypes.cast(function, ctypes.c_void_p).value or 0)
+        return code, 0, _signature_of_ctypes(function)
     address = getattr(function, "address", None)
     if isinstance(address, int):
         signature = getattr(function, "_sig", None)

@@ -2,40 +2,25 @@
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _atlas_results, _native
+from stickslip import _native
 from stickslip._arrays import numbers
+from stickslip._planes import Plane
 from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
-from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats, _threads
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from stickslip.families import HybridFamily
 
 Cancelled: TypeAlias = Callable[[], object]
-
-#: Colours and dashes of boundaries by the place of their margin, as in the picture.
-STYLES = {
-    "end": ("#333333", "-"),
-    "minimum": ("#0072b2", "-"),
-    "maximum": ("#0072b2", "-"),
-    "exit": ("#d55e00", "--"),
-    "start": ("#009e73", "-."),
-    "branch": ("#009e73", "-."),
-}
 
 
 @dataclass(frozen=True)
@@ -155,29 +140,15 @@ class TraceInterrupted(KeyboardInterrupt):
         return (TraceInterrupted, (self.atlas,))
 
 
-class FamilyAtlas(Tabular):
-    """The boundaries and regions of a family in a window, from `trace_family` or `load`."""
+class FamilyAtlas(Plane[_native.FamilyAtlas]):
+    """The boundaries and regions of a family in a window, from `trace_family` or `load`.
 
-    def __init__(self, native: _native.FamilyAtlas) -> None:
-        self._native = native
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_read, (self._native.json(),))
+    Its file needs no family to be read and located in.
+    """
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str]) -> FamilyAtlas:
-        """The atlas in a file that `save` has written, or Rust's `tracer::Document`."""
-        return _read(Path(file).read_text(encoding="utf-8"))
-
-    def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes the file, complete or not at all. It needs no family to be read and located in."""
-        path = Path(file)
-        beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-        try:
-            beside.write_text(self._native.json() + "\n", encoding="utf-8")
-            beside.replace(path)
-        finally:
-            beside.unlink(missing_ok=True)
+    def _read(cls, text: str) -> Self:
+        return cls(_native.FamilyAtlas.read(text))
 
     def resume(
         self,
@@ -197,12 +168,6 @@ class FamilyAtlas(Tabular):
         with reported(progress, f"trace of {self.family}") as report:
             calls = (report, cancelled)
             return _finish(family._native.resume(self._native, _threads(threads), calls))
-
-    @cached_property
-    def document(self) -> dict[str, Any]:
-        """The object in the file of the atlas."""
-        found: dict[str, Any] = json.loads(self._native.json())
-        return found
 
     @property
     def family(self) -> str:
@@ -227,20 +192,9 @@ class FamilyAtlas(Tabular):
         return self._native.finished
 
     @property
-    def objection(self) -> str | None:
-        """What speaks against the atlas; None if nothing does."""
-        return self._native.objection
-
-    @property
     def findings(self) -> tuple[str, ...]:
         """Inconsistencies between curves and vertices."""
         return tuple(self._native.doubts[0])
-
-    @property
-    def verification(self) -> Mapping[str, Any]:
-        """What the comparison with runs found."""
-        report: Mapping[str, Any] = self.document["verification"]
-        return report
 
     @property
     def statistics(self) -> Mapping[str, int]:
@@ -342,40 +296,21 @@ class FamilyAtlas(Tabular):
         found = family._native.decide(self._native, x, y, _threads(threads))
         return _objects([one and _label(one, family.guards) for one in found], shape)
 
-    def plot(self, ax: Axes | None = None, *, labels: bool = True, **line: Any) -> Axes:
-        """Draws the curves with matplotlib, and the number of events in large regions.
-
-        ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
-        properties of all lines, e.g. `linewidth`.
-        """
-        if ax is None:
-            import matplotlib.pyplot as plt
-
-            ax = plt.figure(layout="constrained").add_subplot()
+    def _lines(self) -> Iterator[tuple[str, Floats]]:
         for curve in self.curves:
-            colour, dashes = STYLES[curve.margin.place]
-            style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.0}
-            points = self._native.polyline(curve.id).reshape(-1, 2)
-            ax.plot(points[:, 0], points[:, 1], **(style | line))
+            yield curve.margin.place, self._native.polyline(curve.id).reshape(-1, 2)
+
+    def _labels(self) -> Iterator[tuple[str, float, tuple[float, float]]]:
         (left, right), (bottom, top) = self.window
-        if labels:
-            for region in self.regions:
-                if region.area > 0.005 * (right - left) * (top - bottom):
-                    count = _count_events(region.itinerary)
-                    text = "?" if region.doubtful or count < 0 else str(count)
-                    ax.annotate(text, region.sample, ha="center", va="center")
-        ax.set(xlim=(left, right), ylim=(bottom, top), xlabel=self.axes[0], ylabel=self.axes[1])
-        return ax
+        whole = (right - left) * (top - bottom)
+        for region in self.regions:
+            count = _count_events(region.itinerary)
+            text = "?" if region.doubtful or count < 0 else str(count)
+            yield text, region.area / whole, region.sample
 
-    def _columns(self) -> Columns:
-        return _atlas_results.regions(self)
-
-    def picture(self) -> str:
-        """The curves with the number of events in each region, as an SVG document."""
-        return self._native.picture()
-
-    def _repr_html_(self) -> str:
-        return self.picture()
+    def _frame(self) -> dict[str, Any]:
+        (xlim, ylim), (x, y) = self.window, self.axes
+        return {"xlim": xlim, "ylim": ylim, "xlabel": x, "ylabel": y}
 
     def __repr__(self) -> str:
         counts = (len(self.curves), len(self.vertices), len(self.regions))
@@ -397,10 +332,6 @@ class FamilyAtlas(Tabular):
         exits = [one["guard"] for one in margin["exits"]]
         name = place if isinstance(place, str) else str(next(iter(place)))
         return _margin((exits, margin["guard"], name), self._guards)
-
-
-def _read(text: str) -> FamilyAtlas:
-    return FamilyAtlas(_native.FamilyAtlas.read(text))
 
 
 def _pairs(x: ArrayLike, y: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:

@@ -7,19 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip._axes import (
-    COLOURS,
-    DASHES,
-    DIVERGING,
-    GREY,
-    GROWING,
-    MARKERS,
-    Panels,
-    legend,
-    one,
-    panels,
-    scale,
-)
+from stickslip._axes import DASHES, MARKERS, Panels, legend, one, panels, scale
+from stickslip.style import COLOURS, INK, PHASES, RULE, diverging, growing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,8 +20,8 @@ if TYPE_CHECKING:
     from stickslip.tables import RestitutionTable, VelocityTable
     from stickslip.timesteps import TimeSteps
 
-#: Phases by their characters in an itinerary: name and colour.
-_PHASES = {"+": ("slip +", "#f8d8a8"), "o": ("stick", "#eeeeee"), "-": ("slip −", "#ddf0fa")}
+#: Phases by their characters in an itinerary.
+_PHASES = {"+": "slip +", "o": "stick", "-": "slip −"}
 _EPS_T = "tangential restitution $\\varepsilon_t$"
 _SWITCHES = "number of switches"
 _AXES = {
@@ -53,8 +42,8 @@ def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
     time = course["time"]
     for each in dict.fromkeys(drawn):
         _shade(found, each)
-        each.axhline(0.0, color=GREY, linewidth=0.6)
-    limit: dict[str, Any] = {"color": GREY, "linestyle": "--", "linewidth": 1.0}
+        each.axhline(0.0, color=RULE, linewidth=0.6)
+    limit: dict[str, Any] = {"color": RULE, "linestyle": "--", "linewidth": 1.0}
     forces.plot(time, course["normal_force"], label="friction limit $\\pm F_n$", **limit)
     forces.plot(time, -course["normal_force"], **limit)
     rows: list[tuple[Any, str, str, Any]] = [
@@ -80,12 +69,15 @@ def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
 def _shade(found: Collision, ax: Axes) -> None:
     ends = np.concatenate([[0.0], found.switches["time"], [found.contact_time]])
     kinds = np.array(list(found.itinerary))
-    for kind, (name, colour) in _PHASES.items():
+    # Edges tell white phases from the ground in the legend, and mark the switches.
+    edge: dict[str, Any] = {"edgecolor": RULE, "linewidth": 0.4}
+    for kind, name in _PHASES.items():
         (places,) = np.nonzero(kinds == kind)
         spans = list(zip(ends[places], np.diff(ends)[places], strict=True))
         if spans:
             whole = ax.get_xaxis_transform()
-            ax.broken_barh(spans, (0, 1), transform=whole, color=colour, zorder=0, label=name)
+            style: dict[str, Any] = {"facecolor": PHASES[kind], "zorder": 0, "label": name} | edge
+            ax.broken_barh(spans, (0, 1), transform=whole, **style)
 
 
 def collisions(found: Collisions, ax: Axes | None, options: dict[str, Any]) -> Axes:
@@ -122,7 +114,7 @@ def _around_zero(values: NDArray[Any]) -> dict[str, Any]:
     """Colours of a quantity, the same for both signs."""
     finite = values[np.isfinite(values)]
     largest = max(np.abs(finite).max(initial=0.0), 1e-300)
-    return {"cmap": DIVERGING, "vmin": -largest, "vmax": largest}
+    return {"cmap": diverging(), "vmin": -largest, "vmax": largest}
 
 
 def counted(
@@ -138,10 +130,13 @@ def counted(
 
     steps = np.diff(x)
     if x.size > 1 and ((steps >= 0).all() or (steps <= 0).all()):
-        ax.plot(x, y, color=GREY, linewidth=0.8, zorder=1)
-    style: dict[str, Any] = {"cmap": GROWING, "s": 16, "zorder": 2, "label": label}
+        ax.plot(x, y, color=RULE, linewidth=0.8, zorder=1)
+    style: dict[str, Any] = {
+        "cmap": growing(), "s": 16, "zorder": 2, "label": label,
+        "edgecolors": INK, "linewidths": 0.3,
+    }  # fmt: skip
     drawn = ax.scatter(x, y, c=count, **(style | options))
-    ax.axhline(0.0, color=GREY, linewidth=0.6)
+    ax.axhline(0.0, color=RULE, linewidth=0.6)
     ax.figure.colorbar(drawn, ax=ax, label=_SWITCHES, ticks=MaxNLocator(6, integer=True))
     return ax
 
@@ -182,7 +177,7 @@ def table(
     if len(found.itineraries) > 1:
         regions = found.region(across, up[:, None])
         for number in range(len(found.itineraries)):
-            ax.contour(across, up, regions == number, [0.5], colors="#333333", linewidths=0.6)
+            ax.contour(across, up, regions == number, [0.5], colors=INK, linewidths=0.6)
     ax.set(xlabel=_AXES[x[0]], ylabel=_AXES[y[0]], xscale=scale(across), yscale=scale(up))
     return ax
 
@@ -263,7 +258,7 @@ def fit(found: Fit, ax: Panels, options: dict[str, Any]) -> list[Axes]:
         for number, boundary in enumerate(course["boundaries"]):
             label = None if number else "the switches change"
             where = np.degrees(boundary["angle_rad"])
-            each.axvline(where, color=GREY, linewidth=0.8, linestyle=":", label=label)
+            each.axvline(where, color=RULE, linewidth=0.8, linestyle=":", label=label)
         alone = len(quantities) == 1 or len(set(drawn)) > 1
         each.set_ylabel(quantities[drawn.index(each)] if alone else "value")
         legend(each)

@@ -25,6 +25,18 @@ def check(progress: Any) -> None:
 
 
 @contextmanager
+def keeping(make: Callable[[Any], object]) -> Iterator[None]:
+    """What Ctrl-C leaves of a native call becomes `partial` of the exception, made by `make`."""
+    try:
+        yield
+    except KeyboardInterrupt as stopped:
+        found = vars(stopped).get("partial")
+        if found is not None:
+            stopped.partial = make(found)  # type: ignore[attr-defined]
+        raise
+
+
+@contextmanager
 def reported(progress: Progress | None, what: str) -> Iterator[Report | None]:
     """The callable that reports; with True a bar of tqdm, or a line where it is not installed."""
     check(progress)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip._axes import COLOURS, DASHES, GREY, MARKERS, Panels, legend, one, panels
+from stickslip._axes import DASHES, MARKERS, Panels, legend, one, panels
+from stickslip.style import COLOURS, RULE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +53,7 @@ def solution(
     for axes in dict.fromkeys(drawn):
         if events.size <= _MOST_LINES:
             for when in np.unique(events["time"]):
-                axes.axvline(when, color=GREY, linewidth=0.5, alpha=0.5, zorder=0)
+                axes.axvline(when, color=RULE, linewidth=0.5, alpha=0.5, zorder=0)
     return _finish(drawn)
 
 
@@ -72,7 +73,7 @@ def sensitivities(found: Sensitivities, ax: Axes | None, line: dict[str, Any]) -
     """The derivatives of the times of events."""
     ax = one(ax)
     events = found.event != ""
-    ax.axhline(0.0, color=GREY, linewidth=0.6)
+    ax.axhline(0.0, color=RULE, linewidth=0.6)
     for place, name in enumerate(found.by):
         style: dict[str, Any] = {
             "color": COLOURS[place % len(COLOURS)],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import json
@@ -58,6 +59,24 @@ def build_of_process() -> dict[str, str]:
         "stickslip_version": _native.version(),
         "rounding": f"{products} products, {where}, probe {probe}",
     }
+
+
+class Refused(ValueError):
+    """A store is another one than is expected."""
+
+
+@contextlib.contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Says in words that a store is damaged."""
+    try:
+        yield
+    except (Refused, OSError):
+        raise
+    except Exception as error:  # Zarr and its codecs have many.
+        what = f"{type(error).__name__}: {error}"
+        raise OSError(
+            f"{path} is damaged in its metadata ({what}); expected a store as write_sweep made it"
+        ) from error
 
 
 def exists(path: Path) -> bool:
@@ -124,14 +143,15 @@ def open_store(path: Path) -> zarr.Group:
     import zarr
     from zarr.storage import LocalStore
 
-    try:
-        # Zarr would make the directory.
-        group = zarr.open_group(LocalStore(path), mode="r+") if path.is_dir() else None
-    except FileNotFoundError:
-        group = None
-    schema = group.attrs.get("schema") if group else None
+    with _readable(path):
+        try:
+            # Zarr would make the directory.
+            group = zarr.open_group(LocalStore(path), mode="r+") if path.is_dir() else None
+        except FileNotFoundError:
+            group = None
+        schema = group.attrs.get("schema") if group else None
     if group is None or schema != SCHEMA:
-        raise ValueError(
+        raise Refused(
             f"{path} on {platform.node()} has the schema {schema!r}; expected {SCHEMA!r}, or "
             "nothing there; all workers must see the same files"
         )
@@ -141,7 +161,20 @@ def open_store(path: Path) -> zarr.Group:
 def refuse_another(
     path: Path, group: zarr.Group, plan: Plan, engine: Engine, block: tuple[int, ...]
 ) -> None:
-    """Raises unless the store is of this sweep."""
+    """Raises unless the store is of this sweep, and has its arrays."""
+    with _readable(path):
+        _refuse_another(path, group, plan, engine, block)
+        for name in engine.quantities:
+            dtype, description = QUANTITIES[name]
+            array = _array(group, name)
+            found = (array.dtype, array.shape, _dims(array), array.attrs.asdict())
+            if found != (dtype, plan.shape, plan.dims, description):
+                raise ValueError(f"{name} is not as it was")
+
+
+def _refuse_another(
+    path: Path, group: zarr.Group, plan: Plan, engine: Engine, block: tuple[int, ...]
+) -> None:
     marks: Any = group["_blocks"].attrs.asdict()
     names = ("method", "rtol", "atol", *LAW)
     stored = {name: group.attrs.get(name) for name in names}
@@ -163,24 +196,30 @@ def refuse_another(
         if chunks != block:
             differ.append(f"chunks are {block}, in the store {chunks}")
     if differ:
-        raise ValueError(f"{path} is of another sweep: {'; '.join(differ)}")
+        raise Refused(f"{path} is of another sweep: {'; '.join(differ)}")
 
 
 def _same(group: zarr.Group, plan: Plan, name: str) -> bool:
     variable = plan.coordinates[name].variable
     array = _array(group, name)
     return (
-        tuple(array.metadata.dimension_names or ()) == variable.dims  # type: ignore[union-attr]
+        _dims(array) == variable.dims
         and array.shape == variable.shape
+        and array.dtype == variable.dtype
         and np.asarray(array[...]).tobytes() == variable.values.tobytes()
     )
+
+
+def _dims(array: zarr.Array[Any]) -> tuple[Any, ...]:
+    return tuple(array.metadata.dimension_names or ())  # type: ignore[union-attr]
 
 
 def _array(group: zarr.Group, name: str) -> zarr.Array[Any]:
     import zarr
 
     array = group[name]
-    assert isinstance(array, zarr.Array)
+    if not isinstance(array, zarr.Array):
+        raise TypeError(f"{name} is no array")
     return array
 
 
@@ -194,43 +233,45 @@ def write_block(store: str, place: tuple[int, ...], errors: OnError, threads: in
     attributes = group.attrs.asdict()
     build = build_of_process()
     if any(attributes.get(name) != value for name, value in build.items()):
-        raise ValueError(
+        raise Refused(
             f"{store} has results of stickslip {attributes.get('stickslip_version')} with "
             f"{attributes.get('rounding')}; on {platform.node()} there is stickslip "
             f"{build['stickslip_version']} with {build['rounding']}. Their last digits differ: "
             "use processors of one kind (perhaps with STICKSLIP_PORTABLE=1), or another store"
         )
-    marks: Any = group["_blocks"].attrs.asdict()
-    engine = Engine(
-        attributes["method"],  # type: ignore[arg-type]
-        attributes.get("rtol"),  # type: ignore[arg-type]
-        attributes.get("atol"),  # type: ignore[arg-type]
-        {name: attributes[name] for name in LAW if name in attributes},
-        tuple(marks["quantities"]),
-        errors,
-    )
-    targets = {name: _array(group, name) for name in engine.quantities}
-    first = targets[engine.quantities[0]]
-    dims = first.metadata.dimension_names or ()  # type: ignore[union-attr]
-    area = {
-        dim: slice(at * most, min((at + 1) * most, size))
-        for dim, at, most, size in zip(dims, place, first.chunks, first.shape, strict=True)
-    }
-    here = tuple(area.values())
-    digests = _array(group, "_blocks/digest")
-    if _is_whole(targets, here, digests, place, errors):
-        return
+    with _readable(Path(store)):
+        marks: Any = group["_blocks"].attrs.asdict()
+        engine = Engine(
+            attributes["method"],  # type: ignore[arg-type]
+            attributes.get("rtol"),  # type: ignore[arg-type]
+            attributes.get("atol"),  # type: ignore[arg-type]
+            {name: attributes[name] for name in LAW if name in attributes},
+            tuple(marks["quantities"]),
+            errors,
+        )
+        targets = {name: _array(group, name) for name in engine.quantities}
+        first = targets[engine.quantities[0]]
+        dims = _dims(first)
+        area = {
+            dim: slice(at * most, min((at + 1) * most, size))
+            for dim, at, most, size in zip(dims, place, first.chunks, first.shape, strict=True)
+        }
+        here = tuple(area.values())
+        digests = _array(group, "_blocks/digest")
+        if _is_whole(targets, here, digests, place, errors):
+            return
 
-    parameters = {}
-    for name in marks["parameters"]:
-        array = _array(group, name)
-        own = array.metadata.dimension_names or ()  # type: ignore[union-attr]
-        values = np.asarray(array[tuple(area[dim] for dim in own)])
-        parameters[name] = aligned(values, own, dims)
+        parameters = {}
+        for name in marks["parameters"]:
+            array = _array(group, name)
+            own = _dims(array)
+            values = np.asarray(array[tuple(area[dim] for dim in own)])
+            parameters[name] = aligned(values, own, dims)
     found = engine.compute(parameters, threads)
-    for name, target in targets.items():
-        target[here] = found[name]
-    digests[place] = np.uint64(_digest(found))
+    with _readable(Path(store)):
+        for name, target in targets.items():
+            target[here] = found[name]
+        digests[place] = np.uint64(_digest(found))
 
 
 def _is_whole(
@@ -288,8 +329,10 @@ def on_workers(
 def complete(path: Path) -> None:
     """Marks the store as complete."""
     metadata = path / "zarr.json"
-    found = json.loads(metadata.read_bytes())
-    if not found["attributes"]["complete"]:
+    with _readable(path):
+        found = json.loads(metadata.read_bytes())
+        marked = found["attributes"]["complete"]
+    if not marked:
         found["attributes"]["complete"] = 1
         # Zarr's own draft would lie beside it, and be warned of by those who open the store.
         draft = path / "_blocks" / f"{uuid.uuid4().hex}.partial"
@@ -301,5 +344,6 @@ def dataset(path: Path) -> Dataset:
     import xarray as xr
     from zarr.storage import LocalStore
 
-    found: xr.Dataset = xr.open_zarr(LocalStore(path, read_only=True), consolidated=False)
+    with _readable(path):
+        found: xr.Dataset = xr.open_zarr(LocalStore(path, read_only=True), consolidated=False)
     return found

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip._axes import COLOURS, DASHES, MARKERS, legend, one, scale
+from stickslip._axes import DASHES, MARKERS, legend, one, scale
+from stickslip.style import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -3,35 +3,22 @@
 from __future__ import annotations
 
 import json
-import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _atlas_results, _laws, _native
+from stickslip import _laws, _native
 from stickslip._arrays import numbers
 from stickslip._laws import Law
+from stickslip._planes import Plane
 from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
-from stickslip._tabular import Columns, Tabular
 from stickslip.collisions import Floats, _threads, psi_of_ratio
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-#: Colours of the kinds of boundaries, which a colour-blind reader can tell apart.
-COLOURS = {"end-of-contact": "#333333", "stick-graze": "#0072b2", "slip-graze": "#d55e00"} | {
-    kind: "#009e73" for kind in ("start-of-contact", "start-of-tail")
-}
-LINES = {"end-of-contact": "-", "stick-graze": "-", "slip-graze": "--"} | {
-    kind: "-." for kind in ("start-of-contact", "start-of-tail")
-}
 
 
 class AtlasWarning(UserWarning):
@@ -100,35 +87,12 @@ class Located:
     distance: Floats
 
 
-class Atlas(Tabular):
+class Atlas(Plane[_native.Atlas]):
     """The subdivision of a window, from `trace` or `Atlas.load`."""
 
-    def __init__(self, native: _native.Atlas) -> None:
-        self._native = native
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_read, (self._native.json(),))
-
     @classmethod
-    def load(cls, file: str | os.PathLike[str]) -> Atlas:
-        """The atlas in a file that `save` or `stickslip trace` has written."""
-        return _read(Path(file).read_text(encoding="utf-8"))
-
-    def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes the file that `stickslip trace` would write, complete or not at all."""
-        path = Path(file)
-        beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-        try:
-            beside.write_text(self._native.json() + "\n", encoding="utf-8")
-            beside.replace(path)
-        finally:
-            beside.unlink(missing_ok=True)
-
-    @cached_property
-    def document(self) -> dict[str, Any]:
-        """The object in the file of the atlas."""
-        found: dict[str, Any] = json.loads(self._native.json())
-        return found
+    def _read(cls, text: str) -> Self:
+        return cls(_native.Atlas.read(text))
 
     @property
     def window(self) -> Mapping[str, Any]:
@@ -140,17 +104,6 @@ class Atlas(Tabular):
     def tolerance(self) -> float:
         """Accuracy of the boundaries in psi."""
         return float(self.document["tolerance"])
-
-    @property
-    def verification(self) -> Mapping[str, Any]:
-        """What the verification found."""
-        report: Mapping[str, Any] = self.document["verification"]
-        return report
-
-    @property
-    def objection(self) -> str | None:
-        """What speaks against the atlas; None if nothing does."""
-        return self._native.objection
 
     @cached_property
     def boundaries(self) -> tuple[Boundary, ...]:
@@ -214,55 +167,25 @@ class Atlas(Tabular):
         found: dict[str, Any] = json.loads(self._native.geojson())
         return found
 
-    def plot(self, ax: Axes | None = None, *, labels: bool = True, **line: Any) -> Axes:
-        """Draws the boundaries with matplotlib, and the number of switches in large regions.
+    def _lines(self) -> Iterator[tuple[str, Floats]]:
+        return ((boundary.kind, boundary.points) for boundary in self.boundaries)
 
-        ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
-        properties of all lines, e.g. `linewidth`.
-        """
-        if ax is None:
-            import matplotlib.pyplot as plt
+    def _labels(self) -> Iterator[tuple[str, float, tuple[float, float]]]:
+        return ((str(one.switch_count), one.area_share, one.sample) for one in self.regions)
 
-            ax = plt.figure(layout="constrained").add_subplot()
-        named = set()
-        for boundary in self.boundaries:
-            kind = boundary.kind
-            style: dict[str, Any] = {"color": COLOURS[kind], "linestyle": LINES[kind]}
-            style |= {"linewidth": 1.0} | line
-            label = None if kind in named else kind
-            named.add(kind)
-            ax.plot(boundary.points[:, 0], boundary.points[:, 1], label=label, **style)
-        if labels:
-            for region in self.regions:
-                if region.area_share > 0.005:
-                    ax.annotate(str(region.switch_count), region.sample, ha="center", va="center")
+    def _frame(self) -> dict[str, Any]:
         (low, high), psi = self.window["kappa"], self.window["psi"]
-        ax.set(
-            xlim=(low, high),
-            ylim=psi,
-            xscale="log" if high > 10 * low else "linear",
-            xlabel=r"scaled stiffness $\kappa$",
-            ylabel=r"impact ratio $\psi$",
-        )
-        return ax
-
-    def _columns(self) -> Columns:
-        return _atlas_results.regions(self)
-
-    def picture(self) -> str:
-        """The boundaries with the number of switches in each region, as an SVG document."""
-        return self._native.picture()
-
-    def _repr_html_(self) -> str:
-        return self.picture()
+        return {
+            "xlim": (low, high),
+            "ylim": psi,
+            "xscale": "log" if high > 10 * low else "linear",
+            "xlabel": r"scaled stiffness $\kappa$",
+            "ylabel": r"impact ratio $\psi$",
+        }
 
     def __repr__(self) -> str:
         counts = (len(self.boundaries), len(self.vertices), len(self.regions))
         return "Atlas: {} boundaries, {} vertices, {} regions".format(*counts)
-
-
-def _read(text: str) -> Atlas:
-    return Atlas(_native.Atlas.read(text))
 
 
 def trace(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import operator
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -18,6 +19,7 @@ from stickslip._arrays import numbers, real
 from stickslip._axes import Panels, svg
 from stickslip._laws import Law
 from stickslip._libraries import library
+from stickslip._progress import keeping
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular, write_parquet
 
@@ -245,6 +247,10 @@ class Collision(Tabular):
         """Forces and velocity against time, as an SVG document."""
         return self._native.picture()
 
+    def animate(self, path: str | os.PathLike[str]) -> None:
+        """Writes the picture as it comes into being, an animated GIF."""
+        Path(path).write_bytes(self._native.animation())
+
     def _repr_html_(self) -> str:
         return self.picture()
 
@@ -462,10 +468,13 @@ def psi_of_ratio(ratio: ArrayLike, mu: ArrayLike = 0.4, alpha: ArrayLike = 2 / 7
 
 def collide(
     kappa: float,
-    psi: float,
+    psi: float | None = None,
     damping: float = 0.0,
     method: Method = "auto",
     *,
+    ratio: float | None = None,
+    mu: float | None = None,
+    alpha: float | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     law: Law | None = None,
@@ -473,9 +482,10 @@ def collide(
 ) -> Collision:
     """One collision, with every switch.
 
-    kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0. damping: scaled damping, 0
-    or above. method: "exact", "dop853", "dopri5", or "auto", which is exact unless a tolerance is
-    given. rtol, atol: tolerances of a step of the integrators. law: the contact law, a name of `laws`
+    kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with
+    the friction mu, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as for
+    homogeneous spheres. damping: scaled damping, 0 or above. method: "exact", "dop853", "dopri5",
+    or "auto", which is exact unless a tolerance is given. rtol, atol: tolerances of a step of the integrators. law: the contact law, a name of `laws`
     or its terms; the paper's if there is none. tangential_damping: (gamma_t/gamma_n)/alpha of a law,
     0 or above.
 
@@ -486,7 +496,10 @@ def collide(
     ('+o-o+o-', -0.0416522075)
     >>> collision.switches["time"].shape
     (6,)
+    >>> collide(63, ratio=0.7).itinerary
+    '+o-o+o-'
     """
+    psi = _psi(psi, ratio, mu, alpha)
     for name, value in (("kappa", kappa), ("psi", psi), ("damping", damping)):
         if np.ndim(value):
             raise TypeError(f"{name} is an array; expected a number, or use collide_many")
@@ -511,6 +524,24 @@ def _broadcast(
     return given, flat, shape  # type: ignore[return-value]
 
 
+def _psi(
+    psi: ArrayLike | None,
+    ratio: ArrayLike | None,
+    mu: ArrayLike | None,
+    alpha: ArrayLike | None,
+) -> Any:
+    """psi as it is given, or from the impact ratio."""
+    if (psi is None) == (ratio is None):
+        given = "neither psi nor ratio is" if psi is None else "psi and ratio are both"
+        raise ValueError(f"{given} given; expected exactly one of them")
+    if ratio is None:
+        for name, value in (("mu", mu), ("alpha", alpha)):
+            if value is not None:
+                raise ValueError(f"{name} = {value!r} has no effect with psi; expected with ratio")
+        return psi
+    return psi_of_ratio(ratio, 0.4 if mu is None else mu, 2 / 7 if alpha is None else alpha)
+
+
 def _strict(errors: OnError) -> bool:
     if errors not in ("raise", "nan"):
         raise ValueError(f'errors = {errors!r}; expected "raise" or "nan"')
@@ -519,18 +550,32 @@ def _strict(errors: OnError) -> bool:
 
 def _threads(threads: int | None) -> int:
     if threads is None:
-        return 0
+        return _threads_of_environment()
     if not 1 <= operator.index(threads) <= 1024:
         raise ValueError(f"threads = {threads}; expected 1 to 1024, or None for one for each core")
     return threads
 
 
+def _threads_of_environment() -> int:
+    """The number of threads that RAYON_NUM_THREADS says, or 0, one for each core."""
+    text = os.environ.get("RAYON_NUM_THREADS", "")
+    if not text:
+        return 0
+    if not (text.isascii() and text.isdigit() and 1 <= int(text) <= 1024):
+        expected = "expected a whole number from 1 to 1024"
+        raise ValueError(f"RAYON_NUM_THREADS = {text!r}; {expected}")
+    return int(text)
+
+
 def eps_t(
     kappa: ArrayLike,
-    psi: ArrayLike,
+    psi: ArrayLike | None = None,
     damping: ArrayLike = 0.0,
     method: Method = "auto",
     *,
+    ratio: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     law: Law | None = None,
@@ -552,6 +597,9 @@ def eps_t(
         psi,
         damping,
         method,
+        ratio=ratio,
+        mu=mu,
+        alpha=alpha,
         rtol=rtol,
         atol=atol,
         law=law,
@@ -563,10 +611,13 @@ def eps_t(
 
 def eps_t_and_switch_count(
     kappa: ArrayLike,
-    psi: ArrayLike,
+    psi: ArrayLike | None = None,
     damping: ArrayLike = 0.0,
     method: Method = "auto",
     *,
+    ratio: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     law: Law | None = None,
@@ -578,18 +629,23 @@ def eps_t_and_switch_count(
 
     As `eps_t`; where a collision has no result, the number of switches is -1.
     """
+    psi = _psi(psi, ratio, mu, alpha)
     _, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
-    found, counts, _ = _native.eps_t(flat, engine, chosen, _strict(errors), _threads(threads))
+    with keeping(lambda left: left[:2]):
+        found, counts, _ = _native.eps_t(flat, engine, chosen, _strict(errors), _threads(threads))
     return found.reshape(shape), counts.reshape(shape)
 
 
 def collide_many(
     kappa: ArrayLike,
-    psi: ArrayLike,
+    psi: ArrayLike | None = None,
     damping: ArrayLike = 0.0,
     method: Method = "auto",
     *,
+    ratio: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     law: Law | None = None,
@@ -599,7 +655,9 @@ def collide_many(
 ) -> Collisions:
     """Collisions of arrays of parameters, with every switch of each.
 
-    As `eps_t`; with errors = "nan", `failures` says why collisions have no result.
+    As `eps_t`; with errors = "nan", `failures` says why collisions have no result. Ctrl-C keeps
+    those that are done, in C order, as `partial` of the KeyboardInterrupt; of `eps_t` and
+    `eps_t_and_switch_count` these are both arrays of the latter.
 
     >>> many = collide_many([18.0, 63.0], 0.5)
     >>> many.itinerary.tolist(), many.switch_count.tolist()
@@ -607,7 +665,14 @@ def collide_many(
     >>> many.switches[many.offsets[1] : many.offsets[2]]["to"].tolist()
     ['stick', 'slip', 'stick', 'slip', 'stick', 'slip']
     """
+    psi = _psi(psi, ratio, mu, alpha)
     given, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
-    columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))
+    def first(left: dict[str, Any]) -> Collisions:
+        shape = left["eps_t"].shape
+        kappa, psi, damping = (one if one.size == 1 else one[: shape[0]] for one in flat)
+        return Collisions((kappa, psi, damping), (*engine, *chosen), left, shape)
+
+    with keeping(first):
+        columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))
     return Collisions(given, (*engine, *chosen), columns, shape)

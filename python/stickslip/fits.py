@@ -57,6 +57,10 @@ class Fit(Tabular):
         self.intervals: dict[str, list[tuple[float, float]] | None] = {
             one["parameter"]: _pieces(one["pieces"]) for one in self.data["intervals"]
         }
+        #: What the data decide of each free number and what they leave open, a sentence each.
+        self.verdicts: dict[str, str] = {
+            one["parameter"]: one["verdict"] for one in self.data["intervals"]
+        }
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (Kept(self._native.json(), self.picture()),)

@@ -22,7 +22,7 @@ from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._solutions import Names, Solution, event_array, solution_of, with_variables
-from stickslip._progress import Progress, reported
+from stickslip._progress import Progress, keeping, reported
 from stickslip.collisions import _threads
 from stickslip.studies import Study, _study
 
@@ -113,6 +113,7 @@ class FormulaSystem:
         by their labels.
 
         Raises ValueError if a name or a value is wrong, and ComputationError if the run fails.
+        Ctrl-C keeps the run up to there as `partial` of the KeyboardInterrupt.
         """
         rerun = self._arguments(
             (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)
@@ -121,7 +122,12 @@ class FormulaSystem:
         start = given[1]
         low, high = (-np.inf if start is None else start, np.inf if end is None else end)
         times = None if t_eval is None else times_within(t_eval, low, high).tolist()
-        found = self._native.run(values, given, end, settings, times)
+        def until_now(found: dict[str, Any]) -> Solution:
+            message = f"Stopped at t = {found['end_time']!r} by Ctrl-C."
+            return replace(self._solution(found, bool(dense_output), rerun), message=message)
+
+        with keeping(until_now):
+            found = self._native.run(values, given, end, settings, times)
         return self._solution(found, bool(dense_output), rerun)
 
     def sensitivities(

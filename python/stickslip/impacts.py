@@ -17,8 +17,9 @@ from stickslip import _laws, _native, _pictures
 from stickslip._arrays import numbers
 from stickslip._axes import svg
 from stickslip._laws import Law
+from stickslip._progress import keeping
 from stickslip._tabular import Columns, Tabular
-from stickslip.collisions import Collisions, Floats, Method, OnError, collide_many
+from stickslip.collisions import Collisions, Floats, Method, OnError, _strict, _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -257,17 +258,49 @@ _UNITS = {
     "normal_after_m_per_s": ("normal velocity after", "m/s"),
     "tangential_after_m_per_s": ("tangential velocity after", "m/s"),
     "contact_time_s": ("duration of the contact", "s"),
+    "patch_impact_angle_rad": ("angle of the surfaces' velocity before, from the normal", "rad"),
+    "patch_rebound_angle_rad": ("angle of the surfaces' velocity after, from the normal", "rad"),
+    "centre_e_t": ("tangential restitution of the centres", "1"),
+    "centre_impact_angle_rad": ("angle of the centres' velocity before, from the normal", "rad"),
+    "centre_rebound_angle_rad": ("angle of the centres' velocity after, from the normal", "rad"),
+    "impulse_ratio": ("tangential impulse over the normal one", "1"),
+    "kinetic_before_j": ("kinetic energy before", "J"),
+    "kinetic_after_j": ("kinetic energy after", "J"),
+    "work_of_wall_j": ("work of the wall", "J"),
+    "sliding_j": ("energy lost in slip", "J"),
+    "damping_j": ("energy taken by damping", "J"),
+    "spring_left_j": ("energy left in the spring, or lost in stick", "J"),
+    "compression_left_j": ("energy left in the compression", "J"),
+    "unbalanced_j": ("what is missing in the balance of energy", "J"),
 }
+
+#: What an impact has beside its collision, in the order of the compiled module. The velocities and
+#: spins of the spheres follow.
+_NUMBERS = (
+    *("kappa", "psi", "damping", "contact_time_s", "time_unit_s"),
+    *list(_UNITS)[list(_UNITS).index("patch_impact_angle_rad") :],
+)
 
 
 class Impacts(Tabular):
-    """Arrays of impacts, from `impact`, in the order and shape of the velocities."""
+    """Arrays of impacts, from `impact`, in the order and shape of the velocities.
+
+    Where an impact has no result, its numbers are NaN, and `failures` says why. Where nothing is
+    tangential, eps_t and centre_e_t are NaN.
+    """
 
     def __init__(
-        self, normal_m_per_s: Floats, tangential_m_per_s: Floats, unit: Floats, found: Collisions
+        self,
+        normal_m_per_s: Floats,
+        tangential_m_per_s: Floats,
+        found: Collisions,
+        numbers: Mapping[str, Floats],
+        spheres: Floats,
     ) -> None:
-        #: The collisions in scaled parameters.
+        #: The collisions in scaled parameters; psi is 0 where nothing is tangential.
         self.collisions = found
+        #: Why impacts have no result, by their index in C order.
+        self.failures = found.failures
         #: Velocities of the surfaces before, in m/s.
         self.normal_m_per_s = normal_m_per_s
         self.tangential_m_per_s = tangential_m_per_s
@@ -277,19 +310,53 @@ class Impacts(Tabular):
         #: Velocities after, in m/s: the normal one of separation, the tangential one in the
         #: direction of the one before.
         self.normal_after_m_per_s: Floats = found.eps_n * normal_m_per_s
-        self.tangential_after_m_per_s: Floats = found.eps_t * tangential_m_per_s
+        self.tangential_after_m_per_s: Floats = np.where(
+            (tangential_m_per_s == 0) & np.isfinite(found.eps_n),
+            0.0,
+            found.eps_t * tangential_m_per_s,
+        )
         #: Duration of the contact in s.
-        self.contact_time_s: Floats = found.contact_time * unit
+        self.contact_time_s = numbers["contact_time_s"]
         #: The unit of scaled times in s.
-        self.time_unit_s = unit
-        #: Number of switches.
+        self.time_unit_s = numbers["time_unit_s"]
+        #: Number of switches; -1 without a result, as the reversals.
         self.switch_count = found.switch_count
+        self.reversals = found.reversals
+        #: A character a phase: + and - slip to either side, o stick; empty without a result.
+        self.itinerary = found.itinerary
+        #: Angles of the velocity of the surfaces and of the centres, from the normal, in rad.
+        self.patch_impact_angle_rad = numbers["patch_impact_angle_rad"]
+        self.patch_rebound_angle_rad = numbers["patch_rebound_angle_rad"]
+        self.centre_impact_angle_rad = numbers["centre_impact_angle_rad"]
+        self.centre_rebound_angle_rad = numbers["centre_rebound_angle_rad"]
+        #: Tangential restitution of the centres.
+        self.centre_e_t = numbers["centre_e_t"]
+        #: Tangential impulse over the normal one.
+        self.impulse_ratio = numbers["impulse_ratio"]
+        #: Energies in J.
+        self.kinetic_before_j = numbers["kinetic_before_j"]
+        self.kinetic_after_j = numbers["kinetic_after_j"]
+        self.work_of_wall_j = numbers["work_of_wall_j"]
+        self.sliding_j = numbers["sliding_j"]
+        self.damping_j = numbers["damping_j"]
+        self.spring_left_j = numbers["spring_left_j"]
+        self.compression_left_j = numbers["compression_left_j"]
+        self.unbalanced_j = numbers["unbalanced_j"]
+        #: Velocities in m/s and spins in rad/s of the spheres after. Their shape is that of the
+        #: velocities before, followed by the spheres, two or one, and by x, y and z.
+        self.velocity_m_per_s: Floats = spheres[..., :3]
+        self.spin_rad_per_s: Floats = spheres[..., 3:]
 
     _dimension = "impact"
 
     def _columns(self) -> Columns:
-        names = (*_UNITS, "eps_n", "eps_t", "switch_count")
-        return {name: np.ravel(getattr(self, name)) for name in names}
+        names = (*_UNITS, "eps_n", "eps_t", "switch_count", "reversals", "itinerary")
+        columns: Columns = {name: np.ravel(getattr(self, name)) for name in names}
+        for name in ("velocity_m_per_s", "spin_rad_per_s"):
+            vectors = getattr(self, name)
+            for sphere, axis in np.ndindex(vectors.shape[-2:]):
+                columns[f"spheres[{sphere}].{name}[{axis}]"] = np.ravel(vectors[..., sphere, axis])
+        return columns
 
     def _meanings(self) -> dict[str, dict[str, str]]:
         return {name: {"long_name": text, "units": unit} for name, (text, unit) in _UNITS.items()}
@@ -326,10 +393,10 @@ def impact(
     """Impacts of two bodies for arrays of velocities, which broadcast.
 
     bodies: two bodies, an object with the layout of docs/impact.schema.json, or the path of such a
-    file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0.
-    Instead of them speed_m_per_s and angle_rad, the angle between velocity and normal, above 0 and
-    below pi/2. law: the contact law of bodies that are read; `Bodies` have their own. The other
-    arguments are those of `collide_many`.
+    file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0,
+    and 0 or above. Instead of them speed_m_per_s and angle_rad, the angle between velocity and
+    normal, 0 or above and below pi/2. law: the contact law of bodies that are read; `Bodies` have
+    their own. The other arguments are those of `collide_many`, and Ctrl-C keeps as much.
     """
     if isinstance(bodies, Bodies) and law is not None:
         raise ValueError(f"law = {law!r} is given for Bodies; expected in Bodies(..., law=...)")
@@ -338,10 +405,10 @@ def impact(
         if normal_m_per_s is not None or tangential_m_per_s is not None:
             raise ValueError("velocities and a speed with an angle are both given; expected one")
         angle = numbers("angle_rad", angle_rad)
-        wrong = ~((angle > 0) & (angle < np.pi / 2))
+        wrong = ~((angle >= 0) & (angle < np.pi / 2))
         if np.any(wrong):
             first = float(angle[wrong].flat[0])
-            raise ValueError(f"angle_rad = {first!r}; expected above 0 and below pi/2")
+            raise ValueError(f"angle_rad = {first!r}; expected 0 or above and below pi/2")
         normal_m_per_s = np.multiply(speed_m_per_s, np.cos(angle))
         tangential_m_per_s = np.multiply(speed_m_per_s, np.sin(angle))
     elif speed_m_per_s is not None or angle_rad is not None:
@@ -352,20 +419,36 @@ def impact(
         numbers("normal_m_per_s", normal_m_per_s),
         numbers("tangential_m_per_s", tangential_m_per_s),
     )
-    kappa, psi, damping, unit = pair.contacts(normal, tangential)
-    found = collide_many(
-        kappa,
-        psi,
-        damping,
-        method,
-        rtol=rtol,
-        atol=atol,
-        errors=errors,
-        threads=threads,
-        law=pair.law,
-        tangential_damping=pair._pair.tangential_damping,
+    flat: tuple[Floats, Floats] = (
+        np.ascontiguousarray(normal).reshape(-1),
+        np.ascontiguousarray(tangential).reshape(-1),
     )
-    return Impacts(normal, tangential, unit, found)
+    engine, shape = (method, rtol, atol), normal.shape
+    count = _threads(threads)
+    chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
+
+    def made(
+        found: tuple[dict[str, Any], Floats],
+        velocities: tuple[Floats, Floats],
+        shape: tuple[int, ...],
+    ) -> Impacts:
+        columns, rows = found
+        count = 2 if isinstance(pair.other, Sphere) else 1
+        table = rows.reshape(*shape, len(_NUMBERS) + 6 * count)
+        values = {name: table[..., index] for index, name in enumerate(_NUMBERS)}
+        spheres = table[..., len(_NUMBERS) :].reshape(*shape, count, 6)
+        scaled = (values["kappa"], values["psi"], values["damping"])
+        collisions = Collisions(scaled, (*engine, *chosen), columns, shape)
+        before, across = velocities
+        return Impacts(before, across, collisions, values, spheres)
+
+    def done(found: tuple[dict[str, Any], Floats]) -> Impacts:
+        count = found[0]["eps_t"].size
+        return made(found, (flat[0][:count], flat[1][:count]), (count,))
+
+    with keeping(done):
+        found = pair._pair.impacts(flat, engine, _strict(errors), count)
+    return made(found, (normal, tangential), shape)
 
 
 def _known(place: str, fields: Any, *names: str) -> None:

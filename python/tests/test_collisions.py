@@ -188,3 +188,29 @@ def test_references_with_25_digits(name: str) -> None:
     assert many.itinerary.tolist() == [case[3] for case in cases]
     error = np.abs(many.eps_t - np.array([float(case[4]) for case in cases]))
     assert np.all(error < 1e-15 * (1 + np.sqrt(kappa)))
+
+
+def test_a_ratio_stands_for_psi() -> None:
+    psi = stickslip.psi_of_ratio(1.4, 0.5, 0.3)
+    assert stickslip.collide(18, ratio=1.4, mu=0.5, alpha=0.3).eps_t == stickslip.eps_t(18, psi)
+    ratios = [0.7, 1.4]
+    expected = stickslip.eps_t(18, stickslip.psi_of_ratio(ratios))
+    assert stickslip.eps_t(18, ratio=ratios).tolist() == expected.tolist()
+    assert stickslip.collide_many(18, ratio=ratios).eps_t.tolist() == expected.tolist()
+    for arguments, words in [
+        ({}, "neither psi nor ratio is given"),
+        ({"psi": 1, "ratio": 1}, "psi and ratio are both given"),
+        ({"psi": 1, "mu": 0.4}, "mu = 0.4 has no effect with psi"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            stickslip.collide(18, **arguments)
+
+
+@pytest.mark.parametrize("text", ["0", "1025", "many", "-1"])
+def test_threads_of_the_environment_have_limits(
+    monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    monkeypatch.setenv("RAYON_NUM_THREADS", text)
+    with pytest.raises(ValueError, match="RAYON_NUM_THREADS = .*; expected a whole number"):
+        stickslip.eps_t([18, 63], 0.5)
+    assert stickslip.eps_t([18, 63], 0.5, threads=1).shape == (2,)

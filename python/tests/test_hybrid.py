@@ -615,6 +615,16 @@ def test_what_is_not_compiled():
     for wrong in (decay, 1.5, None, "f", True, two, LowLevelCallable(two.ctypes)):
         with pytest.raises(TypeError):
             Compiled(wrong)
+    real, other = ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_float)
+    for declared in [
+        (None, ctypes.c_float, real, real, real),
+        (None, ctypes.c_double, real, real),
+        (ctypes.c_double, ctypes.c_double, real, real, real),
+        (None, ctypes.c_double, other, real, real),
+    ]:
+        with pytest.raises(TypeError, match="the signature is"):
+            Compiled(ctypes.CFUNCTYPE(*declared)(lambda *arguments: 0))
+    Compiled(ctypes.CFUNCTYPE(None, ctypes.c_double, real, real, real)(lambda *arguments: None))
     for wrong in (0, -1, 2**70):
         with pytest.raises(ValueError, match="address"):
             Compiled(wrong)

@@ -97,14 +97,56 @@ def test_a_batch_of_the_program_is_the_arrays(tmp_path: Path, name: str, law: st
     with (tmp_path / "out.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     found = impact(EXAMPLES / name, normal, tangential, law=law)
-    for column, expected in [
-        ("eps_n", found.eps_n),
-        ("eps_t", found.eps_t),
-        ("contact_time_s", found.contact_time_s),
-        ("switch_count", found.switch_count),
-    ]:
-        # Bit for bit.
+    columns = found._columns()
+    given = {"normal_m_per_s", "tangential_m_per_s", "status"}
+    # What the program writes beside the given columns, bit for bit.
+    for column in rows[0].keys() - given - {"kappa", "psi", "damping", "itinerary"}:
+        assert [float(row[column]) for row in rows] == columns[column].tolist(), column
+    assert [row["itinerary"] for row in rows] == columns["itinerary"].tolist()
+    for column in ("kappa", "psi", "damping"):
+        expected = getattr(found.collisions, column)
         assert [float(row[column]) for row in rows] == expected.ravel().tolist()
+
+
+def test_an_array_of_impacts_is_the_encounters() -> None:
+    bodies = spheres()
+    normal, tangential = np.array([0.5, 2.0]), np.array([0.3, 0.1])
+    found = impact(bodies, normal, tangential)
+    assert found.velocity_m_per_s.shape == found.spin_rad_per_s.shape == (2, 2, 3)
+    for index, (n, t) in enumerate(zip(normal.tolist(), tangential.tolist(), strict=True)):
+        one = bodies.encounter(Motion((0, 0, 0.04), (t, 0, -n)), Motion((0, 0, 0), (0, 0, 0)))
+        for sphere, motion in enumerate(one["spheres"]):
+            assert found.velocity_m_per_s[index, sphere].tolist() == motion["velocity_m_per_s"]
+            assert found.spin_rad_per_s[index, sphere].tolist() == motion["spin_rad_per_s"]
+        assert found.centre_e_t[index] == one["observed"]["centre_e_t"]
+        assert found.impulse_ratio[index] == one["observed"]["impulse_ratio"]
+        assert found.kinetic_after_j[index] == one["energy_j"]["kinetic_after"]
+    # Momentum and energy.
+    momentum = found.velocity_m_per_s.sum(axis=1)
+    assert momentum == pytest.approx(np.stack([tangential, 0 * normal, -normal], 1), abs=1e-14)
+    assert np.abs(found.unbalanced_j / found.kinetic_before_j).max() < 1e-14
+
+
+def test_normal_impacts() -> None:
+    bodies = Bodies(Sphere(0.02, STEEL), Wall(), Surface(0.4, 1e7, 1e-6))
+    found = impact(bodies, [1.0, 1.0], [0.0, 0.5])
+    assert found.itinerary.tolist()[0] == "o" and found.switch_count.tolist()[0] == 0
+    assert np.isnan(found.eps_t).tolist() == [True, False]
+    assert found.eps_n[0] == found.eps_n[1]
+    assert found.tangential_after_m_per_s[0] == 0.0 and found.collisions.psi[0] == 0.0
+    assert found.velocity_m_per_s[0, 0].tolist() == [0.0, 0.0, found.normal_after_m_per_s[0]]
+    at_angle = impact(bodies, speed_m_per_s=1.0, angle_rad=[0.0])
+    assert at_angle.eps_n[0] == found.eps_n[0] and at_angle.centre_rebound_angle_rad[0] == 0.0
+
+
+def test_one_bad_impact_does_not_end_an_array() -> None:
+    velocities = [1.0, -1.0, float("nan"), 2.0]
+    found = impact(spheres(), velocities, 0.5, errors="nan")
+    assert np.isnan(found.eps_t).tolist() == [False, True, True, False]
+    assert np.isnan(found.kinetic_after_j).tolist() == [False, True, True, False]
+    assert sorted(found.failures) == [1, 2] and "normal_m_per_s = -1" in found.failures[1]
+    assert found.switch_count.tolist()[1:3] == [-1, -1]
+    assert found.eps_t[3] == impact(spheres(), 2.0, 0.5).eps_t
 
 
 def test_an_encounter_keeps_momentum() -> None:

@@ -3,6 +3,7 @@
 import signal
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,6 +41,37 @@ def test_ctrl_c_ends_a_long_call(name: str) -> None:
         press.start()
         LONG[name]()
         press.cancel()
+
+
+def interrupted(call: Callable[[], object]) -> Any:
+    """What Ctrl-C leaves of a call."""
+    thread = threading.main_thread().ident
+    assert thread is not None
+    press = threading.Timer(0.5, signal.pthread_kill, [thread, signal.SIGINT])
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        press.start()
+        call()
+        press.cancel()
+    return stopped.value.partial  # type: ignore[attr-defined]
+
+
+def test_ctrl_c_keeps_what_is_done() -> None:
+    kappa = np.linspace(1e5, 1e6, 1_000_000)
+    left = interrupted(lambda: stickslip.collide_many(kappa, 1.0, 0.2))
+    assert 0 < left.size < kappa.size and np.array_equal(left.kappa, kappa[: left.size])
+    assert left.eps_t[-1] == stickslip.eps_t(kappa[left.size - 1], 1.0, 0.2)
+    found, counts = interrupted(lambda: stickslip.eps_t(kappa, 1.0, 0.2))
+    assert found.shape == counts.shape and 0 < found.size < kappa.size
+    solution = interrupted(lambda: stickslip.system(OSCILLATOR.format(1e6)).solve())
+    assert 0 < solution.t[-1] < 1e6 and "by Ctrl-C" in solution.message
+    steel = stickslip.Material(210e9, 0.3, 7850.0)
+    pair = stickslip.Bodies(
+        stickslip.Sphere(0.02, steel), stickslip.Wall(), stickslip.Surface(0.4, 1e12, 1e-7)
+    )
+    speeds = np.linspace(0.1, 1, 3_000_000)
+    impacts = interrupted(lambda: stickslip.impact(pair, speeds, 0.5))
+    count = impacts.normal_m_per_s.size
+    assert 0 < count < speeds.size and impacts.kinetic_after_j.shape == (count,)
 
 
 def test_long_calls_report_their_progress() -> None:

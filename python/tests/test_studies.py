@@ -1,5 +1,6 @@
 """Studies and maps."""
 
+import html
 import json
 from pathlib import Path
 
@@ -81,3 +82,16 @@ def test_maps() -> None:
     ]:
         with pytest.raises(ValueError, match=words):
             stickslip.map(**arguments)  # type: ignore[arg-type]
+
+
+def test_all_parts_are_on_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    titles = stickslip.reproduction_parts()[:2]
+    monkeypatch.setattr(stickslip._native, "reproduction_parts", lambda: titles)
+    page = stickslip.reproduce(tmp_path / "out", cells=20)
+    assert page == tmp_path / "out/index.html"
+    text = page.read_text()
+    for index, title in enumerate(titles):
+        study = stickslip.reproduce(index, cells=20)
+        assert title in text and all(html.escape(one) in text for one in study.findings)
+        assert all((tmp_path / f"out/{name}.svg").exists() for name in study.pictures)
+    assert text.count("<svg") >= 2

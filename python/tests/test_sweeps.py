@@ -441,6 +441,21 @@ def test_damaged_blocks_are_computed_again(tmp_path: Path, damage: Any, again: i
     assert all("c/1/0" in name for name in changed)
 
 
+def test_damage_is_never_read_as_another_result() -> None:
+    bench = runpy.run_path(str(Path(__file__).parents[1] / "benches/damaged_stores.py"))
+    became = bench["battery"](60)
+    assert became["wrong"] == 0 and became["refused"] > 5 and became["as written"] > 5, became
+
+
+@pytest.mark.parametrize("name", ["zarr.json", "eps_t/zarr.json", "_blocks/zarr.json"])
+def test_damaged_metadata_are_named(tmp_path: Path, name: str) -> None:
+    write_sweep(tmp_path / "s", **SMALL)
+    path = tmp_path / "s" / name
+    path.write_text(path.read_text().replace(":", ";", 1))
+    with pytest.raises(OSError, match="is damaged in its metadata"):
+        write_sweep(tmp_path / "s", **SMALL)
+
+
 def test_damaged_coordinates_are_refused(tmp_path: Path) -> None:
     write_sweep(tmp_path / "s", **SMALL)
     (tmp_path / "s/kappa/c/1").unlink()

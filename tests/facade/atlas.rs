@@ -8,13 +8,13 @@ use std::sync::LazyLock;
 
 use rayon::prelude::*;
 use stickslip::model::{Collider, exact};
-use stickslip::plane::{CollisionFamily, CollisionPlane};
+use stickslip::plane::{CollisionEvent, CollisionFamily, CollisionLabel, CollisionPlane};
 use stickslip::solver::margin::{Margin, Place};
 use stickslip::tracer::{
     Location, Node, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };
 
-type Atlas = Subdivision<Vec<usize>, Margin>;
+type Atlas = Subdivision<CollisionLabel, Margin>;
 
 const KAPPA: (f64, f64) = (0.05, 100.0);
 const PSI: (f64, f64) = (0.01, 3.0);
@@ -51,14 +51,14 @@ fn traced(family: &CollisionFamily, plane: &CollisionPlane, options: &TraceOptio
 }
 
 /// The switches of a collision, by integration, and without damping also by the exact solution.
-fn label(plane: &CollisionPlane, point: &Point) -> Result<Vec<usize>, String> {
+fn label(plane: &CollisionPlane, point: &Point) -> Result<CollisionLabel, String> {
     let contact = plane.contact(point).expect("in the window");
     let integrated = Collider::default().collide(contact).map_err(|error| error.to_string())?;
     if contact.damping() == 0.0 {
         let exact = exact::collide(contact).map_err(|error| error.to_string())?;
         assert_eq!(exact.itinerary(), integrated.itinerary(), "{contact:?}");
     }
-    Ok(CollisionPlane::label(&integrated))
+    Ok(CollisionEvent::label(&integrated))
 }
 
 /// Random points, half of them uniform in κ, half in ln κ, and points beside every boundary: all

@@ -42,7 +42,7 @@ pub enum Failure {
     },
     /// Some points of a map have no result.
     #[error(
-        "{} of {points} points could not be computed and are NaN and -1 in {}; the first, {failed}",
+        "{} of {points} points could not be computed and are {shown} in {}; the first, {failed}",
         failed.points, path.display()
     )]
     Points {
@@ -50,16 +50,20 @@ pub enum Failure {
         failed: Box<Failed>,
         /// The number of all points.
         points: usize,
+        /// How they are shown.
+        shown: &'static str,
         /// The output file.
         path: PathBuf,
     },
     /// Some runs of a map of a system have no result.
-    #[error("{failed} of {points} runs failed and are NaN and -1 in {}", path.display())]
+    #[error("{failed} of {points} runs failed and are {shown} in {}", path.display())]
     Runs {
         /// The number of runs without a result.
         failed: usize,
         /// The number of all runs.
         points: usize,
+        /// How they are shown.
+        shown: &'static str,
         /// The output file.
         path: PathBuf,
     },
@@ -106,11 +110,13 @@ pub enum Failure {
     /// Something speaks against a result of `reproduce`.
     #[error(transparent)]
     Objection(Box<Objection>),
-    /// Something speaks against an atlas.
-    #[error("{}: the atlas is complete, but may be wrong: {reason}", path.display())]
+    /// Something speaks against a result.
+    #[error("{}: the {what} complete, but may be wrong: {reason}", path.display())]
     Doubtful {
         /// The output file.
         path: PathBuf,
+        /// What the result is called, and its verb: `atlas is`.
+        what: &'static str,
         /// What speaks against it.
         reason: String,
     },
@@ -129,6 +135,9 @@ pub enum Failure {
         /// The first of them, and why it could not be located.
         first: String,
     },
+    /// A point could not be located in an atlas.
+    #[error("{0}")]
+    NotLocated(String),
     /// Standard output cannot be written.
     #[error("standard output: cannot be written: {0}")]
     Stdout(io::Error),
@@ -149,9 +158,13 @@ impl Failure {
     }
 
     /// The failure of a complete file against which something speaks, if there is an `objection`.
-    pub(crate) fn if_doubtful(path: &Path, objection: Option<String>) -> Result<(), Self> {
+    pub(crate) fn if_doubtful(
+        path: &Path,
+        what: &'static str,
+        objection: Option<String>,
+    ) -> Result<(), Self> {
         match objection {
-            Some(reason) => Err(Self::Doubtful { path: path.to_owned(), reason }),
+            Some(reason) => Err(Self::Doubtful { path: path.to_owned(), what, reason }),
             None => Ok(()),
         }
     }

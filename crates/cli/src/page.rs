@@ -11,7 +11,7 @@ use stickslip_figure::number;
 use stickslip_plane::Range;
 use stickslip_reproduction::figures::{Section, boundaries, figure2, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
-use stickslip_studies::{Cell, Column, Study, Table, contact_laws};
+use stickslip_studies::{Cell, Column, Table, contact_laws};
 
 use markup::markup;
 
@@ -62,8 +62,7 @@ pub fn html(sections: &[Section]) -> String {
 }
 
 /// The page of the contact laws.
-pub fn laws(study: Study) -> String {
-    let mut section = Section::from(study);
+pub fn laws(mut section: Section) -> String {
     section.shown.push(contact_laws::LAWS);
     let introduction = &[
         "What the contact laws of particle codes do with two spheres, beside the law of Schwager, \

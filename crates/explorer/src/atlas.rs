@@ -1,13 +1,12 @@
 //! Boundaries and regions of a plane, as accurate as a screen shows them.
 
 use serde_json::{Value, json};
-use stickslip_model::Contact;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::BoundaryKind;
-use stickslip_solver::margin::{Margin, Place};
+use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
-    Atlas, AtlasOptions, Point, Serial, Side, SpecialPoint, Stretch, Surveyor, TraceOptions,
-    VerifyOptions, Watch, Window,
+    Atlas, AtlasOptions, Names, Point, RunNames, Serial, Side, SpecialPoint, Stretch, Surveyor,
+    TraceOptions, VerifyOptions, Watch, Window,
 };
 
 use crate::axis::Axis;
@@ -84,17 +83,7 @@ pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String
             None => ("no collision".to_owned(), 0, 0),
         }
     };
-    Ok(document(&atlas, &window, place, |margin| collision_kind(&any, margin), name))
-}
-
-fn collision_kind(any: &Contact, margin: &Margin) -> &'static str {
-    match BoundaryKind::of(any, margin) {
-        BoundaryKind::EndOfContact => "end-of-contact",
-        BoundaryKind::StickGraze => "stick-graze",
-        BoundaryKind::SlipGraze => "slip-graze",
-        BoundaryKind::StartOfContact => "start-of-contact",
-        BoundaryKind::StartOfTail => "start-of-tail",
-    }
+    Ok(document(&atlas, &window, place, |margin| BoundaryKind::of(&any, margin).name(), name))
 }
 
 /// The boundaries and regions of a system.
@@ -115,17 +104,8 @@ pub fn of_system(plane: &SystemPlane, [x, y]: [&Axis; 2]) -> Result<Value, Strin
         let count = label.fired().map_or(0, <[usize]>::len);
         (itinerary::words(label, family.rules()), count, itinerary::of_label(label))
     };
-    Ok(document(&atlas, &window, |point| (*point).into(), system_kind, name))
-}
-
-fn system_kind(margin: &Margin) -> &'static str {
-    match margin.place {
-        Place::End => "event-at-end",
-        Place::Start { .. } => "event-at-start",
-        Place::Minimum { .. } | Place::Maximum { .. } => "graze",
-        Place::Exit(_) => "order",
-        Place::Branch(_) => "branch",
-    }
+    let (names, place) = (RunNames::default(), |point: &Point| (*point).into());
+    Ok(document(&atlas, &window, place, |margin| names.kind(margin), name))
 }
 
 fn special_name(special: SpecialPoint) -> &'static str {

@@ -8,13 +8,12 @@
 //!
 //! Start reading in [`panel`] (axes, and what is drawn against them) and [`mod@svg`] (shapes and
 //! words). Then `ticks` (round values on axes), `legend` (keys and their meanings), `placement`
-//! (places of labels in regions), [`markup`] and [`mod@number`] (texts), [`shape`] and [`style`]
+//! (places of labels in regions), [`markup`] (texts), [`shape`] and [`style`]
 //! (sizes and colours), `bitmap` (images in a picture) and [`raster`] (a picture as PNG).
 
 mod bitmap;
 mod legend;
 pub mod markup;
-pub mod number;
 pub mod panel;
 mod placement;
 #[cfg(feature = "png")]

@@ -33,6 +33,10 @@ pub enum FigureError {
     /// An image cannot be written as PNG.
     #[error("the image cannot be written as PNG: {0}")]
     Png(#[from] png::EncodingError),
+    /// Pictures cannot be written as GIF.
+    #[cfg(feature = "png")]
+    #[error("the pictures cannot be written as GIF: {0}")]
+    Gif(#[from] gif::EncodingError),
     /// The SVG cannot be read.
     #[cfg(feature = "png")]
     #[error("the SVG cannot be read: {0}")]

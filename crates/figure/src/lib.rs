@@ -2,7 +2,8 @@
 //!
 //! The functions of [`pictures`] draw whole pictures from data: a [collision](pictures::collision),
 //! a [gallery](pictures::gallery) of many, a [map](pictures::map), a computed
-//! [grid](pictures::grid), an [atlas](pictures::atlas), a [chart](pictures::chart) of series. Each
+//! [grid](pictures::grid), an [atlas](pictures::atlas), a [chart](pictures::chart) of series; with
+//! the features `practice` and `studies` also a fit, errors of time steps, and studies. Each
 //! results in an [`Svg`], whose document is a file, and [`png()`] makes the same picture as PNG.
 //!
 //! Pictures are made of the parts in [`canvas`]. Start reading in [`canvas::panel`] (axes, and what
@@ -26,11 +27,12 @@ mod error;
 pub mod pictures;
 
 pub use canvas::markup;
-pub use canvas::number::number;
 #[cfg(feature = "png")]
-pub use canvas::raster::png;
+pub use canvas::raster::{gif, png};
+pub use canvas::style;
 pub use canvas::svg::Svg;
 pub use error::FigureError;
+pub use stickslip_model::text::number;
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -18,6 +18,7 @@
 //! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
 //! | [`spheres`] | SI units: [`quantity`](spheres::quantity), [`bodies`](spheres::bodies), [`scaling`](spheres::scaling) to a [`Contact`], [`encounter`](spheres::encounter) in three dimensions, its [`Outcome`](spheres::Outcome) and [`ImpactReport`](spheres::ImpactReport) |
 //! | [`limits`] | [`normal`](limits::normal), [`coulomb`](limits::coulomb), [`largest`](limits::largest), [`inner`](limits::inner): closed forms and limits to compare with |
+//! | | [`text`]: numbers in sentences and pictures |
 //!
 //! With the feature `serde`, results serialise themselves, and `document` says what computed them.
 //!
@@ -40,6 +41,7 @@ pub mod spheres;
 pub mod document;
 #[cfg(feature = "serde")]
 mod serialize;
+pub mod text;
 
 pub use engines::error::{CollisionError, CollisionFailure};
 #[doc(hidden)]

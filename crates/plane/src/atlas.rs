@@ -7,8 +7,8 @@
 //! - `frame`: the window of an atlas
 //! - `boundary`: what the tracer's guards and margins mean for a collision
 //! - `regions`: the atlas itself
-//! - `tracing`: how an atlas is made, and `error`: why there is none
-//! - `verification`: how it is compared with collisions
+//! - `tracing` and `draft`: how an atlas is made, and `error`: why there is none
+//! - `verification`: what the comparison with collisions found
 //! - `locate` and `crossings`: how points and lines are looked up in it
 //! - `angles`: the lines of impacts of one speed
 //! - `polyline`, `geojson` and `document`: how it is drawn, exported, written and read back
@@ -18,6 +18,7 @@ mod boundary;
 pub(crate) mod crossings;
 #[cfg(feature = "serde")]
 mod document;
+mod draft;
 mod error;
 mod frame;
 #[cfg(feature = "geojson")]
@@ -41,10 +42,9 @@ pub use error::{AtlasError, LabelError};
 pub use frame::{Frame, RatioRange};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};
-pub use locate::{Located, Unlocated};
+pub use locate::{Located, ParameterPlace, Unlocated};
 pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
-pub use tracing::{Division, VerifiedAtlas, divide, trace};
+pub use tracing::{divide, trace};
 pub(crate) use tracing::{require_traceable, trace_options};
-pub(crate) use verification::unresolved;
 pub use verification::{EulerFields, MismatchFields, VerificationReport};

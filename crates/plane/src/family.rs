@@ -1,9 +1,9 @@
 //! Collisions over the (κ, ψ) plane, as a family that the tracer can follow.
 
 use stickslip_model::exact::{self, ExactError};
-use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
+use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{Collision, Contact, Engine, InvalidValue, Law, Side};
+use stickslip_model::{Contact, Engine, InvalidValue, Law};
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, Options, Outcome, Start};
 use stickslip_tracer::{
@@ -17,6 +17,7 @@ pub use gaining::GainingFamily;
 pub use general::GeneralFamily;
 
 use crate::chart::Chart;
+use crate::label::{CollisionEvent, CollisionLabel};
 use crate::oblique::Oblique;
 use crate::range::Range;
 use crate::sheet::Sheet;
@@ -62,7 +63,7 @@ enum Parameters {
     Velocities(BodyPair),
 }
 
-/// Collisions as a family of runs. The label of a run is the list of the guards that fired.
+/// Collisions as a family of runs.
 ///
 /// The paper's law is traced with the exact engine. Its margins are the numbers by which it
 /// decides, and take a fortieth of the instructions of integrated ones. The integrator, which then
@@ -283,6 +284,11 @@ impl CollisionPlane {
         GeneralFamily::new(self, precise())
     }
 
+    /// The contact at the lower ends of both parameters.
+    pub(crate) fn first(&self) -> &Contact {
+        &self.first
+    }
+
     /// Whether the collisions obey the paper's law.
     pub(crate) fn obeys_paper(&self) -> bool {
         self.first.obeys_paper()
@@ -299,17 +305,6 @@ impl CollisionPlane {
     /// and any contact will do.
     pub(crate) fn contact_or_any(&self, point: &Point) -> Contact {
         self.contact(point).unwrap_or(self.first)
-    }
-
-    /// The label of a collision, whichever engine computed it.
-    #[must_use]
-    pub fn label(collision: &Collision) -> Vec<usize> {
-        let mut side = Side::Positive;
-        let guard = |switch: &stickslip_model::Switch| {
-            let same = std::mem::replace(&mut side, switch.side) == switch.side;
-            if same { SAME_SIDE } else { OTHER_SIDE }
-        };
-        collision.switches.iter().map(guard).collect()
     }
 }
 
@@ -328,15 +323,20 @@ fn precise() -> Options {
     Options { rtol: 1e-14, atol: 1e-14, first_step: Some(0.1), max_step: 0.1, ..Options::default() }
 }
 
-/// The guards that fire in an integrated collision. All contacts end, so that any other itinerary
+/// The label of a collision with the paper's law in which `guards` fire.
+fn events(guards: &[usize]) -> CollisionLabel {
+    guards.iter().filter_map(|&guard| CollisionEvent::fired(guard)).collect()
+}
+
+/// The label of an integrated collision. All contacts end, so that any other itinerary
 /// is an error.
 fn fired(
     family: &HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>,
     point: &Point,
     itinerary: Itinerary,
-) -> Result<Vec<usize>, CollisionFamilyError> {
+) -> Result<CollisionLabel, CollisionFamilyError> {
     if let Itinerary::Fires(guards) = itinerary {
-        return Ok(guards);
+        return Ok(events(&guards));
     }
     Err(match family.outcome(point) {
         Ok(outcome) => CollisionFamilyError::Unfinished(outcome),
@@ -345,14 +345,14 @@ fn fired(
 }
 
 impl Family for CollisionFamily {
-    type Label = Vec<usize>;
+    type Label = CollisionLabel;
     type Margin = Margin;
     type Error = CollisionFamilyError;
 
-    fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionFamilyError> {
         Ok(match self {
             Self::Exact(plane) => {
-                CollisionPlane::label(&exact::collide(plane.contact_or_any(point))?)
+                CollisionEvent::label(&exact::collide(plane.contact_or_any(point))?)
             }
             Self::Integrated(family) => fired(family, point, family.label(point)?)?,
             Self::General(family) => family.label(point),
@@ -403,11 +403,14 @@ impl Family for CollisionFamily {
         }
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
+    fn free_run(
+        &self,
+        point: &Point,
+    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
         Ok(match self {
             Self::Exact(plane) => {
                 let found = exact::margins(&plane.contact_or_any(point))?;
-                FreeRun { label: found.fired, margins: found.near_misses }
+                FreeRun { label: events(&found.fired), margins: found.near_misses }
             }
             Self::Integrated(family) => {
                 let FreeRun { label, margins } = family.free_run(point)?;

@@ -3,12 +3,15 @@
 
 use stickslip_model::Contact;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Atlas, AtlasOptions, Curve, Mismatch, Surveyor};
+use stickslip_tracer::{Atlas, AtlasOptions, Curve, Names, Point, Surveyor};
 
-use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options, unresolved};
+use crate::atlas::{
+    AtlasError, BoundaryKind, Frame, itinerary, polyline, require_traceable, trace_options,
+};
 use crate::family::gaining::{gains, level};
 use crate::family::general::failed;
 use crate::family::{CollisionFamily, CollisionPlane};
+use crate::label::CollisionLabel;
 use crate::progress::{InParallel, Watch};
 
 #[cfg(feature = "serde")]
@@ -27,7 +30,7 @@ pub struct Gaining {
     family: CollisionFamily,
     /// All regions in traced coordinates, with what speaks against them. Changes of the switches
     /// divide the regions of |ε_t| further.
-    pub atlas: Atlas<Vec<usize>, Margin>,
+    pub atlas: Atlas<CollisionLabel, Margin>,
 }
 
 /// A line in the window on which |ε_t| is 1.
@@ -105,7 +108,7 @@ impl Gaining {
     #[must_use]
     pub fn lines(&self) -> Vec<Line> {
         let extent = self.atlas.plane.window().extent();
-        let line = |curve: &Curve<Vec<usize>, Margin>| {
+        let line = |curve: &Curve<CollisionLabel, Margin>| {
             let eps_t = level(&curve.margin)?;
             let points = polyline(self.plane.chart(), &extent, curve);
             Some(Line { eps_t, gains_left: gains(&curve.sides[0]), points })
@@ -144,32 +147,38 @@ impl Gaining {
     /// What speaks against the lines, in sentences; none if nothing does.
     #[must_use]
     pub fn objections(&self) -> Vec<String> {
-        let Atlas { plane, unresolved: open, verification, .. } = &self.atlas;
-        let mut found = unresolved(&self.plane, plane.vertices(), open);
-        let mismatch = |mismatch: &Mismatch<Vec<usize>>| {
-            let [kappa, psi] = self.plane.parameters(&mismatch.checkpoint.point);
-            format!("kappa = {kappa:?}, psi = {psi:?} does not belong to its region")
-        };
-        found.extend(verification.mismatches.iter().map(mismatch));
-        found.extend(verification.standing(plane).map(ToString::to_string));
-        found.extend(verification.failed().map(|failed| {
-            let [kappa, psi] = self.plane.parameters(&failed.checkpoint.point);
-            format!("the collision at kappa = {kappa:?}, psi = {psi:?} failed")
-        }));
-        if !self.atlas.is_finished() {
-            found.push("cancelled before the end".to_owned());
-        }
-        if found.is_empty() && !self.agrees() {
-            found.push("Euler's formula does not hold".to_owned());
-        }
-        found
+        self.atlas.doubts(self).map_or_else(Vec::new, |doubts| doubts.sentences())
     }
 
-    /// The number of objections and the first one; `None` if nothing speaks against the lines.
+    /// The numbers of objections and the first one; `None` if nothing speaks against the lines.
     #[must_use]
     pub fn objection(&self) -> Option<String> {
-        let objections = self.objections();
-        let first = objections.first()?;
-        Some(format!("{} objections; the first: {first}", objections.len()))
+        self.atlas.doubts(self).map(|doubts| doubts.objection())
+    }
+}
+
+impl Names<CollisionLabel, Margin> for Gaining {
+    fn axes(&self) -> [&str; 2] {
+        self.plane.names()
+    }
+
+    fn parameters(&self, point: &Point) -> [f64; 2] {
+        self.plane.parameters(point)
+    }
+
+    fn point(&self, [x, y]: [f64; 2]) -> Point {
+        self.plane.point(x, y)
+    }
+
+    fn text(&self, label: &CollisionLabel) -> String {
+        let itinerary = itinerary(self.plane.first(), label);
+        if gains(label) { format!("{itinerary} with |eps_t| above 1") } else { itinerary }
+    }
+
+    fn kind(&self, margin: &Margin) -> &'static str {
+        match level(margin) {
+            Some(_) => "gain",
+            None => BoundaryKind::of(self.plane.first(), margin).name(),
+        }
     }
 }

@@ -11,7 +11,7 @@
 //! Start reading in [`family`]. The modules in reading order:
 //!
 //! - [`chart`]: the coordinates in which the plane is traced
-//! - [`family`]: collisions as a family for the tracer
+//! - [`label`] and [`family`]: collisions as a family for the tracer
 //! - [`oblique`]: impacts of one speed at all angles
 //! - [`sheet`]: a window in traced coordinates, and the accuracy of boundaries in it
 //! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
@@ -29,10 +29,10 @@
 //! let kappa = Range { low: 5.0, high: 8.0 };
 //! let psi = Range { low: 0.8, high: 1.2 };
 //! let frame = Frame::new(kappa, psi, 0.0);
-//! let verified = trace(frame, frame.tolerances().usual, progress::SILENT)?;
-//! assert!(verified.report.agrees);
+//! let atlas = trace(frame, frame.tolerances().usual, progress::SILENT)?;
+//! assert!(atlas.report.agrees);
 //! // Every region has an itinerary: `+o-` is slip, stick and slip to the other side.
-//! assert!(verified.atlas.regions.regions().len() > 1);
+//! assert!(atlas.regions.regions().len() > 1);
 //! # Ok::<(), stickslip_plane::atlas::AtlasError>(())
 //! ```
 //!
@@ -44,6 +44,7 @@ pub mod chart;
 pub mod family;
 pub mod gaining;
 pub mod grid;
+pub mod label;
 pub mod oblique;
 pub mod progress;
 pub mod range;
@@ -57,6 +58,7 @@ pub mod tile;
 pub use chart::Chart;
 pub use family::{CollisionFamily, CollisionFamilyError, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
+pub use label::{CollisionEvent, CollisionLabel};
 pub use oblique::Oblique;
 pub use range::Range;
 pub use sheet::Sheet;

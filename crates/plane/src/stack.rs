@@ -1,28 +1,33 @@
 //! Atlases over the damping, and where their regions are born, merge, split and die.
 //!
-//! Start reading in [`stack()`](fn@stack).
+//! Start reading in [`stack()`](fn@stack). `document` is the file of a stack.
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stickslip_model::InvalidValue;
-use stickslip_tracer::{AtlasOptions, Effect, Stack, StackError, StackOptions, Watch};
+use stickslip_tracer::{AtlasOptions, Change, Stack, StackError, StackOptions, Watch};
 
-use crate::atlas::{self, AtlasError, Frame, VerifiedAtlas, itinerary};
+use crate::atlas::{self, Atlas, AtlasError, Frame, itinerary};
+use crate::family::CollisionPlane;
+use crate::label::CollisionLabel;
 use crate::progress::{InParallel, Progress, Report, SILENT};
 
-/// The name of the layout of a stack that is written, with its version.
-pub const SCHEMA: &str = "stickslip.stack/1";
+#[cfg(feature = "serde")]
+mod document;
+#[cfg(feature = "serde")]
+pub use document::{ChangeFields, EffectFields, LayerFields, MeetingFields, SCHEMA, StackDocument};
 
 /// The atlases of a window at several dampings, and what changes between them.
 #[derive(Clone, Debug)]
 pub struct DampingStack {
-    /// The window. Its damping has no meaning.
-    pub frame: Frame,
+    /// The collisions at the least damping above 0. The window is that of all.
+    pub plane: CollisionPlane,
     /// The atlases, each traced and verified for itself, in the order of the damping.
     pub layers: Vec<DampingLayer>,
-    /// What changes between the least damping above 0 and the greatest one, in this order.
-    pub changes: Vec<DampingChange>,
+    /// What changes between the least damping above 0 and the greatest one, in this order, with
+    /// itineraries as labels.
+    pub changes: Vec<Change<String>>,
     /// The number of atlases that were traced to isolate the changes.
     pub atlases: usize,
 }
@@ -33,51 +38,10 @@ pub struct DampingLayer {
     /// The damping.
     pub damping: f64,
     /// The atlas, verified by integration.
-    pub atlas: VerifiedAtlas,
+    pub atlas: Atlas,
     /// Whether its regions are those that the changes leave; `None` without damping, and inside the
     /// bracket of a change.
     pub as_stacked: Option<bool>,
-}
-
-/// A change of the regions with the damping.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct DampingChange {
-    /// The dampings of two atlases between which the change lies.
-    pub between: [f64; 2],
-    /// The point where special points meet; none if the change is only enclosed.
-    pub meeting: Option<DampingMeeting>,
-    /// Whether several changes may lie there, since atlases between the two dampings are in doubt,
-    /// or differ at dampings that are too close to each other; or whether nothing could be solved
-    /// for. A region can be too small to be seen on one side of a change, which then lies beside
-    /// the two.
-    pub doubtful: bool,
-    /// What becomes of regions as the damping grows. If there is nothing, only neighbours change.
-    pub effects: Vec<RegionEffect>,
-}
-
-/// Where special points of atlases meet.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct DampingMeeting {
-    /// What happens.
-    pub kind: &'static str,
-    /// The damping.
-    pub damping: f64,
-    /// κ of the place.
-    pub kappa: f64,
-    /// ψ of the place.
-    pub psi: f64,
-}
-
-/// What becomes of a region.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct RegionEffect {
-    /// `born`, `dies`, `merge` or `splits`.
-    pub effect: &'static str,
-    /// The switches of the region: one character per phase.
-    pub itinerary: String,
 }
 
 /// Why there is no stack.
@@ -118,7 +82,7 @@ pub enum DampingStackError {
 /// let tolerance = frame.tolerances().usual;
 /// let stack = stack::stack(frame, &[0.05, 0.2], tolerance, progress::SILENT)?;
 /// assert!(stack.layers.iter().all(|layer| layer.as_stacked == Some(true)));
-/// assert!(stack.changes.iter().all(|change| !change.doubtful));
+/// assert!(stack.changes.iter().all(|change| !change.is_doubtful()));
 /// # Ok::<(), stack::DampingStackError>(())
 /// ```
 ///
@@ -144,11 +108,11 @@ pub fn stack(
         || dampings.par_iter().map(layer).collect::<Result<Vec<_>, _>>(),
         || follow(&at, damped, tolerance, progress),
     );
-    let (mut layers, Followed { changes, labels, atlases }) = (layers?, followed?);
+    let (mut layers, Followed { plane, changes, labels, atlases }) = (layers?, followed?);
     for (layer, labels) in layers[undamped..].iter_mut().zip(labels) {
         layer.as_stacked = labels.map(|labels| labels == itineraries(&layer.atlas));
     }
-    Ok(DampingStack { frame, layers, changes, atlases })
+    Ok(DampingStack { plane, layers, changes, atlases })
 }
 
 /// The dampings above 0, if `dampings` are those of a stack.
@@ -167,7 +131,9 @@ pub fn damped(dampings: &[f64]) -> Result<&[f64], DampingStackError> {
 
 /// What the search for changes finds.
 struct Followed {
-    changes: Vec<DampingChange>,
+    /// The collisions at the least damping.
+    plane: CollisionPlane,
+    changes: Vec<Change<String>>,
     /// The itineraries of all regions at each damping, in order.
     labels: Vec<Option<Vec<String>>>,
     atlases: usize,
@@ -207,32 +173,20 @@ fn follow(
         }
     })?;
     let any = sample.contact_or_any(&sample.window().low);
-    let text = |label: &Vec<usize>| itinerary(&any, label);
-    let effect = |effect: &Effect<Vec<usize>>| RegionEffect {
-        effect: effect.name(),
-        itinerary: text(effect.label()),
-    };
-    let changes = stack.changes.iter().map(|change| DampingChange {
-        between: change.between,
-        meeting: change.meeting.map(|meeting| {
-            let [kappa, psi] = sample.sheet().snapped(&meeting.point);
-            DampingMeeting { kind: meeting.kind.name(), damping: meeting.value, kappa, psi }
-        }),
-        doubtful: change.is_doubtful(),
-        effects: change.effects.iter().map(effect).collect(),
-    });
+    let text = |label: &CollisionLabel| itinerary(&any, label);
+    let changes = stack.changes.iter().map(|change| change.map(text)).collect();
     let labels = dampings.iter().map(|&damping| {
         let labels = stack.labels(damping)?;
         let mut labels: Vec<String> = labels.iter().map(text).collect();
         labels.sort();
         Some(labels)
     });
-    Ok(Followed { changes: changes.collect(), labels: labels.collect(), atlases: stack.atlases })
+    let (labels, atlases) = (labels.collect(), stack.atlases);
+    Ok(Followed { plane: sample, changes, labels, atlases })
 }
 
 /// The itineraries of all regions of an atlas, in order.
-fn itineraries(verified: &VerifiedAtlas) -> Vec<String> {
-    let atlas = &verified.atlas;
+fn itineraries(atlas: &Atlas) -> Vec<String> {
     let regions = 0..atlas.regions.regions().len();
     let mut all: Vec<String> = regions.map(|region| atlas.itinerary(region).to_owned()).collect();
     all.sort();
@@ -258,7 +212,7 @@ impl DampingStack {
     pub fn objection(&self) -> Option<String> {
         for layer in &self.layers {
             let at = format!("damping = {:?}", layer.damping);
-            if let Some(reason) = layer.atlas.report.objection() {
+            if let Some(reason) = layer.atlas.objection() {
                 return Some(format!("{at}: {reason}"));
             }
             if layer.as_stacked == Some(false) {
@@ -270,78 +224,6 @@ impl DampingStack {
                 return Some(format!("{at}: changes on both sides are not known"));
             }
         }
-        let doubtful = self.changes.iter().find(|change| change.doubtful)?;
-        let [low, high] = doubtful.between;
-        Some(if doubtful.meeting.is_some() {
-            format!("several changes may lie between the dampings {low:?} and {high:?}")
-        } else {
-            format!("what changes between the dampings {low:?} and {high:?} is not known")
-        })
-    }
-}
-
-/// A stack in the layout of its file.
-#[cfg(feature = "serde")]
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct StackDocument {
-    /// The name of the layout, [`SCHEMA`].
-    pub schema: &'static str,
-    /// Lower and upper end of the scaled stiffness κ.
-    pub kappa: [f64; 2],
-    /// Lower and upper end of the reduced impact ratio ψ.
-    pub psi: [f64; 2],
-    /// Accuracy of the boundaries in ψ.
-    pub tolerance: f64,
-    /// The number of atlases that were traced to isolate the changes.
-    pub atlases: usize,
-    /// Whether nothing speaks against the stack.
-    pub agrees: bool,
-    /// The atlases.
-    pub layers: Vec<LayerFields>,
-    /// What changes between them.
-    pub changes: Vec<DampingChange>,
-}
-
-/// An atlas in the file of a stack.
-#[cfg(feature = "serde")]
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct LayerFields {
-    /// The damping.
-    pub damping: f64,
-    /// The number of boundaries.
-    pub boundaries: usize,
-    /// The number of vertices.
-    pub vertices: usize,
-    /// The number of regions with each itinerary.
-    pub regions: BTreeMap<String, usize>,
-    /// Whether nothing speaks against the atlas.
-    pub agrees: bool,
-    /// Whether its regions are those that the changes leave; `null` without damping and inside the
-    /// bracket of a change.
-    pub as_stacked: Option<bool>,
-}
-
-#[cfg(feature = "serde")]
-impl From<&DampingStack> for StackDocument {
-    fn from(stack: &DampingStack) -> Self {
-        let layers = stack.layers.iter().map(|layer| LayerFields {
-            damping: layer.damping,
-            boundaries: layer.atlas.atlas.regions.curves().len(),
-            vertices: layer.atlas.atlas.regions.vertices().len(),
-            regions: layer.region_counts(),
-            agrees: layer.atlas.report.agrees,
-            as_stacked: layer.as_stacked,
-        });
-        let Frame { kappa, psi, .. } = stack.frame;
-        Self {
-            schema: SCHEMA,
-            kappa: [kappa.low, kappa.high],
-            psi: [psi.low, psi.high],
-            tolerance: stack.layers.first().map_or(0.0, |layer| layer.atlas.atlas.tolerance),
-            atlases: stack.atlases,
-            agrees: stack.objection().is_none(),
-            layers: layers.collect(),
-            changes: stack.changes.clone(),
-        }
+        self.changes.iter().find_map(|change| change.objection("dampings"))
     }
 }

@@ -100,6 +100,12 @@ impl FailureCount {
         }
     }
 
+    /// The number of points without a result.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
     /// The points without a result, if there are any. The first one is computed again, to learn the
     /// reason.
     #[must_use]

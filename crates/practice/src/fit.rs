@@ -21,7 +21,7 @@
 //!
 //! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (the
 //! question), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
-//! `quantile`, `intervals`, `normal` (damping), `course`, `picture`.
+//! `quantile`, `intervals`, `normal` (damping), `course`.
 
 mod axis;
 mod bodies;
@@ -32,7 +32,6 @@ mod free;
 mod intervals;
 mod local;
 mod normal;
-mod picture;
 mod problem;
 mod quantile;
 mod scan;
@@ -46,7 +45,7 @@ use stickslip_plane::progress::Report;
 
 pub use bodies::{Bodies, Values};
 pub use columns::{Column, InvalidColumns, data};
-pub use course::{Boundary, Course};
+pub use course::{Boundary, Course, Curve};
 pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
 pub use intervals::{Interval, Piece};

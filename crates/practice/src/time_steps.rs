@@ -7,7 +7,7 @@
 //! of steps in the undamped contact time t_c ([`undamped_contact_time`]).
 //!
 //! Start reading here; then, in this order: `scheme` (what codes do in a step), `stepped` (one
-//! collision in steps), `settings`, `measure` (errors over impacts and start phases), `picture`,
+//! collision in steps), `settings`, `measure` (errors over impacts and start phases),
 //! `seconds` (times in SI units).
 //!
 //! Against LAMMPS itself, in 264 impacts with 28 laws: the root mean square of the error of ε_t
@@ -19,7 +19,6 @@
 //! point.
 
 mod measure;
-mod picture;
 mod scheme;
 mod seconds;
 mod settings;

@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::{Collision, Contact, Engine, Law, Regime};
 
 use crate::engines::{Choice, LawChoice};
-use crate::failure::{Failure, bad_input};
+use crate::failure::{Failure, bad_input, keeping};
 use crate::parallel::{Threads, in_pieces};
 
 /// Parameters of collisions: κ, ψ and damping, each with one value for all or for each.
@@ -165,7 +165,7 @@ impl Points {
 }
 
 /// Cases without a result: their numbers and the reasons.
-type Failures = Vec<(usize, Failure)>;
+pub type Failures = Vec<(usize, Failure)>;
 
 /// The first of the failures as an exception, if `strict`.
 fn refuse(points: &Points, strict: bool, failures: &Failures) -> PyResult<()> {
@@ -207,14 +207,18 @@ pub fn eps_t<'py>(
         });
         (results, failed)
     };
-    Threads::new(threads, points.count)?.each(py, points.count, work, |(results, failed)| {
+    let threads = Threads::new(threads, points.count)?;
+    let ended = threads.each(py, points.count, work, |(results, failed)| {
         refuse(&points, strict, &failed)?;
         failures.extend(failed);
         eps_t.extend(results.iter().map(|result| result.0));
         counts.extend(results.iter().map(|result| result.1));
         Ok(())
-    })?;
-    (eps_t.into_pyarray(py), counts.into_pyarray(py), messages(&failures)).into_pyobject(py)
+    });
+    let found =
+        (eps_t.into_pyarray(py), counts.into_pyarray(py), messages(&failures)).into_pyobject(py)?;
+    ended.map_err(|error| keeping(py, error, || Ok(found.clone().into_any())))?;
+    Ok(found)
 }
 
 fn messages(failures: &Failures) -> Vec<(usize, String)> {
@@ -223,7 +227,7 @@ fn messages(failures: &Failures) -> Vec<(usize, String)> {
 
 /// Results of successive collisions, as columns.
 #[derive(Default)]
-struct Columns {
+pub struct Columns {
     eps_t: Vec<f64>,
     eps_n: Vec<f64>,
     final_velocity: Vec<f64>,
@@ -241,7 +245,7 @@ struct Columns {
     sides: Vec<i8>,
     springs: Vec<f64>,
     velocities: Vec<f64>,
-    failures: Failures,
+    pub failures: Failures,
 }
 
 impl Columns {
@@ -254,7 +258,19 @@ impl Columns {
         columns
     }
 
-    fn push(&mut self, collision: &Collision) {
+    /// Adds the collision of a central impact, in which nothing is tangential.
+    pub fn push_central(&mut self, collision: &Collision) {
+        self.eps_t.push(f64::NAN);
+        self.eps_n.push(collision.eps_n);
+        self.final_velocity.push(0.0);
+        self.contact_time.push(collision.contact_time);
+        self.reversals.push(0);
+        let number = self.number("o".to_owned());
+        self.itinerary.push(number);
+        self.counts.push(0);
+    }
+
+    pub fn push(&mut self, collision: &Collision) {
         self.eps_t.push(collision.eps_t());
         self.eps_n.push(collision.eps_n);
         self.final_velocity.push(collision.final_velocity);
@@ -273,7 +289,7 @@ impl Columns {
         }
     }
 
-    fn push_failure(&mut self, index: usize, failure: Failure) {
+    pub fn push_failure(&mut self, index: usize, failure: Failure) {
         for column in
             [&mut self.eps_t, &mut self.eps_n, &mut self.final_velocity, &mut self.contact_time]
         {
@@ -295,7 +311,7 @@ impl Columns {
     }
 
     /// Adds the results of the collisions that follow.
-    fn append(&mut self, part: Self) {
+    pub fn append(&mut self, part: Self) {
         let numbers: Vec<i32> = part.itineraries.into_iter().map(|one| self.number(one)).collect();
         let number = |index: &i32| usize::try_from(*index).map_or(-1, |index| numbers[index]);
         self.itinerary.extend(part.itinerary.iter().map(number));
@@ -315,7 +331,7 @@ impl Columns {
     }
 
     /// A dictionary of arrays.
-    fn into_dictionary(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    pub fn into_dictionary(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let mut offset = 0;
         let starts = self.counts.iter().map(|count| {
             offset += count;
@@ -357,10 +373,12 @@ pub fn collide_many<'py>(
     let engine = engine.engine(points.law)?;
     let mut columns = Columns::default();
     let work = |part| Columns::of(&points, engine, part);
-    Threads::new(threads, points.count)?.each(py, points.count, work, |part| {
+    let ended = Threads::new(threads, points.count)?.each(py, points.count, work, |part| {
         refuse(&points, strict, &part.failures)?;
         columns.append(part);
         Ok(())
-    })?;
-    columns.into_dictionary(py)
+    });
+    let found = columns.into_dictionary(py)?;
+    ended.map_err(|error| keeping(py, error, || Ok(found.clone().into_any())))?;
+    Ok(found)
 }

@@ -2,7 +2,8 @@
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
-use stickslip_figure::pictures;
+use pyo3::types::PyBytes;
+use stickslip_figure::{gif, pictures};
 use stickslip_model::document::COLLISION;
 use stickslip_model::history::{History, Snapshot};
 use stickslip_model::sensitivity::Derived;
@@ -11,7 +12,7 @@ use stickslip_solver::Statistics;
 
 use crate::arrays::numbers;
 use crate::engines::{Choice, LawChoice, document};
-use crate::failure::{Failure, bad_input};
+use crate::failure::{Failure, bad_input, failed};
 
 /// A collision with what computed it.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -104,6 +105,14 @@ impl Collision {
     fn picture(&self, py: Python<'_>) -> PyResult<String> {
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
         Ok(pictures::collision::draw(&self.result, &history).document())
+    }
+
+    /// The same picture as it comes into being, as GIF.
+    fn animation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let history = py.detach(|| self.course()).map_err(Failure::from)?;
+        let frames = pictures::collision::frames(&self.result, &history);
+        let film = py.detach(|| gif(frames)).map_err(failed)?;
+        Ok(PyBytes::new(py, &film))
     }
 }
 

@@ -1,5 +1,7 @@
 //! What computes collisions.
 
+use std::fmt::Display;
+
 use pyo3::prelude::*;
 use serde_json::Value;
 use stickslip_model::{Engine, InvalidChoice, Law, presets};
@@ -37,9 +39,13 @@ impl LawChoice {
     pub fn law(&self) -> PyResult<(Law, f64)> {
         let Self(text, tangential_damping) = self;
         let Some(preset) = presets::find(text) else {
-            let law = serde_json::from_str(text).map_err(|error| {
+            let refused = |error: &dyn Display| {
                 bad_input(format!("law = {text}: {error}; expected a name of stickslip.laws()"))
-            })?;
+            };
+            if text.trim_start().starts_with('[') {
+                return Err(refused(&"is a list"));
+            }
+            let law = serde_json::from_str(text).map_err(|error| refused(&error))?;
             return Ok((law, *tangential_damping));
         };
         if *tangential_damping != 0.0 && !preset.tangential_damping {

@@ -1,9 +1,11 @@
 //! Errors of the libraries as Python's exceptions.
 
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
-use pyo3::{PyErr, create_exception};
+use pyo3::create_exception;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
 use stickslip_model::exact::ExactError;
-use stickslip_model::{CollisionError, CollisionFailure, InvalidValue};
+use stickslip_model::spheres::EncounterError;
+use stickslip_model::{CollisionError, InvalidValue};
 use stickslip_plane::atlas::AtlasError;
 
 create_exception!(
@@ -28,6 +30,8 @@ pub fn failed(error: impl ToString) -> PyErr {
 pub enum Failure {
     /// No collision has these parameters.
     Parameter(InvalidValue),
+    /// No impact is like this.
+    Encounter(EncounterError),
     /// The engine has no result.
     Engine(CollisionError),
 }
@@ -38,6 +42,7 @@ impl Failure {
         matches!(
             self,
             Self::Parameter(_)
+                | Self::Encounter(_)
                 | Self::Engine(
                     CollisionError::Domain(_) | CollisionError::Exact(ExactError::Domain(_))
                 )
@@ -48,6 +53,7 @@ impl Failure {
     pub fn message(&self) -> String {
         match self {
             Self::Parameter(error) => error.to_string(),
+            Self::Encounter(error) => error.to_string(),
             Self::Engine(error) => error.to_string(),
         }
     }
@@ -56,6 +62,15 @@ impl Failure {
     pub fn exception(&self, place: &str) -> PyErr {
         let message = format!("{place}{}", self.message());
         if self.is_bad_input() { bad_input(message) } else { failed(message) }
+    }
+}
+
+impl From<EncounterError> for Failure {
+    fn from(error: EncounterError) -> Self {
+        match error {
+            EncounterError::Invalid(error) => Self::Parameter(error),
+            error => Self::Encounter(error),
+        }
     }
 }
 
@@ -82,6 +97,19 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         failure.exception("")
     }
+}
+
+/// `error` with what was found before it as its attribute `partial`, if it is Ctrl-C.
+pub fn keeping<'py>(
+    py: Python<'py>,
+    error: PyErr,
+    partial: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+) -> PyErr {
+    if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+        // Without its attribute it is still Ctrl-C.
+        let _ = partial().and_then(|partial| error.value(py).setattr("partial", partial));
+    }
+    error
 }
 
 /// The exception for a window without atlas.

@@ -64,7 +64,7 @@ impl Fit {
 
     /// Data, fit and boundaries over the angle, as an SVG document, if there is an angle.
     fn picture(&self) -> Option<String> {
-        self.0.picture().map(|picture| picture.document())
+        stickslip_figure::pictures::fit::draw(&self.0).map(|picture| picture.document())
     }
 }
 

@@ -1,18 +1,21 @@
 //! Systems of formulas, which are read from a text and run without the interpreter.
 
+use std::sync::OnceLock;
+
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
-use stickslip_expression::{By, Recording, Runnable, SensitivityError, System};
+use stickslip_expression::{By, Compiled, Recording, Runnable, SensitivityError, System};
 use stickslip_plane::progress::Report;
 use stickslip_solver::dynamic::DynamicSwitch;
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
-use stickslip_studies::own_system;
+use stickslip_figure::pictures::studies as pictures;
+use stickslip_studies::{StudyError, own_system};
 
 use crate::background::{Signals, watched};
-use crate::failure::{bad_input, failed};
+use crate::failure::{bad_input, failed, keeping};
 use crate::studies;
 
 /// A parameter: its name, its value and its range.
@@ -52,17 +55,21 @@ impl Settings {
 
 /// A system that is made of formulas.
 #[pyclass(frozen, module = "stickslip._native")]
-pub struct FormulaSystem(pub(crate) System);
+pub struct FormulaSystem {
+    pub system: System,
+    /// The system ready for parameters, once it has run.
+    compiled: OnceLock<Compiled>,
+}
 
 #[pymethods]
 impl FormulaSystem {
     #[new]
     fn parse(text: &str) -> PyResult<Self> {
-        System::parse(text).map(Self).map_err(|error| PyValueError::new_err(error.to_string()))
+        System::parse(text).map(Self::of).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     fn text(&self) -> String {
-        self.0.text()
+        self.system.text()
     }
 
     /// The system with other names of parameters, components and modes.
@@ -72,7 +79,7 @@ impl FormulaSystem {
         components: Vec<String>,
         modes: Vec<String>,
     ) -> PyResult<Self> {
-        let mut system = self.0.clone();
+        let mut system = self.system.clone();
         let counts = [system.parameters.len(), system.components.len(), system.modes.len()];
         if [parameters.len(), components.len(), modes.len()] != counts {
             return Err(bad_input(format!("expected as many names as there are: {counts:?}")));
@@ -82,22 +89,22 @@ impl FormulaSystem {
         let own = own.chain(system.modes.iter_mut().map(|it| &mut it.name));
         let names = parameters.into_iter().chain(components).chain(modes);
         own.zip(names).for_each(|(own, name)| *own = name);
-        Ok(Self(system))
+        Ok(Self::of(system))
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        let all = self.0.parameters.iter();
+        let all = self.system.parameters.iter();
         all.map(|it| (it.name.clone(), it.value, it.range)).collect()
     }
 
     /// Names, and whether only rules change them.
     fn components(&self) -> Vec<(String, bool)> {
-        self.0.components.iter().map(|it| (it.name.clone(), it.discrete)).collect()
+        self.system.components.iter().map(|it| (it.name.clone(), it.discrete)).collect()
     }
 
     /// Names, with those of their rules.
     fn modes(&self) -> Vec<(String, Vec<String>)> {
-        let modes = self.0.modes.iter();
+        let modes = self.system.modes.iter();
         modes
             .map(|mode| {
                 let rules = mode.rules.iter().enumerate();
@@ -123,7 +130,7 @@ impl FormulaSystem {
             .into_iter()
             .map(|(start, place)| if start { By::Start(place) } else { By::Parameter(place) })
             .collect();
-        let mut system = self.0.clone();
+        let mut system = self.system.clone();
         let (mode, s, state) = start;
         system.first = mode.unwrap_or(system.first);
         if let Some(s) = s {
@@ -166,7 +173,7 @@ impl FormulaSystem {
 
     /// The states at the start, one row of parameters after another.
     fn starts(&self, parameters: PyReadonlyArray2<'_, f64>) -> PyResult<Vec<f64>> {
-        let compiled = self.0.compile().map_err(bad_input)?;
+        let compiled = self.compiled()?;
         let mut states = Vec::new();
         for row in parameters.as_array().rows() {
             let runnable = compiled.with(&row.to_vec()).map_err(bad_input)?;
@@ -190,13 +197,17 @@ impl FormulaSystem {
         let signals = Signals::default();
         let stops = || signals.stop();
         let found = py.detach(|| runnable.record_unless(&stops, method, end, &options));
-        signals.raised()?;
-        let found = found.map_err(|error| failed(self.0.explained(&error)))?;
-        let columns = columns(py, &self.0, &found, times)?;
+        let (found, interrupted) = match (found, signals.raised()) {
+            (Ok(found), interrupted) => (found, interrupted),
+            (Err(_), Err(interrupted)) => return Err(interrupted),
+            (Err(error), Ok(())) => return Err(failed(self.system.explained(&error))),
+        };
+        let columns = columns(py, &self.system, &found, times)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
         let work = found.run.statistics.field + stages * found.steps().len() + 1;
         columns.set_item("nfev", work)?;
+        interrupted.map_err(|error| keeping(py, error, || Ok(columns.clone().into_any())))?;
         Ok(columns)
     }
 
@@ -214,14 +225,30 @@ impl FormulaSystem {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
-        let settings = own_system::Settings { name, system: self.0.clone(), runnable, end };
+        let settings = own_system::Settings { name, system: self.system.clone(), runnable, end };
         studies::run(py, threads, progress.as_ref(), move |report| {
-            own_system::run(&settings, report)
+            let measured = own_system::run(&settings, report)?;
+            Ok::<_, StudyError>((measured.study(), pictures::own_system::draw(&measured)))
         })
     }
 }
 
 impl FormulaSystem {
+    pub fn of(system: System) -> Self {
+        Self { system, compiled: OnceLock::new() }
+    }
+
+    /// The system ready for parameters. It is compiled once.
+    pub fn compiled(&self) -> PyResult<&Compiled> {
+        match self.compiled.get() {
+            Some(compiled) => Ok(compiled),
+            None => {
+                let compiled = self.system.compile().map_err(bad_input)?;
+                Ok(self.compiled.get_or_init(|| compiled))
+            }
+        }
+    }
+
     /// The system with its parameters and its start, and the end of its run.
     fn started(
         &self,
@@ -229,14 +256,14 @@ impl FormulaSystem {
         (mode, s, state): Start,
         end: Option<f64>,
     ) -> PyResult<(Runnable, f64)> {
-        let runnable = self.0.with(parameters).map_err(bad_input)?;
+        let runnable = self.compiled()?.with(parameters).map_err(bad_input)?;
         let runnable = runnable.starting(mode, s, state.as_deref()).map_err(bad_input)?;
         let end = end.unwrap_or(runnable.end());
         if end.is_nan() || end <= runnable.start().s {
             let s = runnable.start().s;
             return Err(bad_input(format!("the run ends at {end}; expected an end after {s}")));
         }
-        if end.is_infinite() && !self.0.ends_itself() {
+        if end.is_infinite() && !self.system.ends_itself() {
             return Err(bad_input(
                 "the system has no end and no rule that ends it; expected t_span",
             ));

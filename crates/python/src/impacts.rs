@@ -1,19 +1,24 @@
 //! Pairs of bodies in SI units, and their impacts.
 
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use std::iter;
+use std::ops::Range;
+
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
-use stickslip_model::InvalidValue;
+use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::document::IMPACT;
 use stickslip_model::spheres::{
     Body, Elasticity, Encounter, Forces, ImpactReport, Motion, Sphere, Vector3, Wall, WallMotion,
     quantity,
 };
+use stickslip_model::{CollisionError, Engine, InvalidValue};
 use stickslip_practice::fit::Bodies;
 
-use crate::arrays::{expect_equal, numbers};
+use crate::arrays::{Columns, expect_equal, numbers};
 use crate::engines::{Choice, LawChoice, document};
-use crate::failure::{Failure, bad_input, failed};
+use crate::failure::{Failure, bad_input, failed, keeping};
+use crate::parallel::Threads;
 
 /// Radius in m, mass in kg, moment of inertia in kg m² or that of a homogeneous sphere, Young's
 /// modulus in Pa, Poisson's ratio.
@@ -58,6 +63,16 @@ impl BodyPair {
     /// What the contact feels of the bodies.
     pub fn reduced(&self) -> stickslip_model::spheres::BodyPair {
         self.reduced
+    }
+
+    /// The impact with velocities of the surfaces in m/s.
+    fn report(&self, velocities: (f64, f64), engine: Engine) -> Result<ImpactReport, Failure> {
+        let encounter =
+            Encounter::of_velocities(&self.sphere, &self.other, velocities, self.forces)?;
+        let (collision, _) = engine.collide(encounter.contact())?;
+        let report = ImpactReport::new(&encounter, collision);
+        report.require_finite().map_err(CollisionError::from)?;
+        Ok(report)
     }
 
     /// The bodies of a fit.
@@ -130,6 +145,62 @@ impl BodyPair {
         PyTuple::new(py, [kappa, psi, damping, unit].map(|column| column.into_pyarray(py)))
     }
 
+    /// The impacts of the bodies with velocities of their surfaces in m/s: their collisions as
+    /// columns, and their other numbers, those of [`write_numbers`] one impact after another, NaN
+    /// where there is none.
+    fn impacts<'py>(
+        &self,
+        py: Python<'py>,
+        velocities: (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>),
+        engine: Choice,
+        strict: bool,
+        threads: usize,
+    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyArray1<f64>>)> {
+        expect_equal([velocities.0.len()?, velocities.1.len()?])?;
+        let (normal, tangential) = (numbers(&velocities.0)?, numbers(&velocities.1)?);
+        let engine = engine.engine((self.reduced.law, self.reduced.tangential_damping()))?;
+        let spheres = match self.other {
+            Body::Sphere(_) => 2,
+            Body::Wall(_) => 1,
+        };
+        let work = |part: Range<usize>| {
+            let (mut columns, mut values) = (Columns::default(), Vec::new());
+            for index in part {
+                match self.report((normal[index], tangential[index]), engine) {
+                    Ok(report) => {
+                        let collision = &report.collision;
+                        if report.encounter.is_central() {
+                            columns.push_central(collision);
+                        } else {
+                            columns.push(collision);
+                        }
+                        write_numbers(&report, &mut values);
+                    }
+                    Err(failure) => {
+                        columns.push_failure(index, failure);
+                        let count = NUMBERS + NUMBERS_OF_SPHERE * spheres;
+                        values.extend(iter::repeat_n(f64::NAN, count));
+                    }
+                }
+            }
+            (columns, values)
+        };
+        let (mut columns, mut values) = (Columns::default(), Vec::new());
+        let count = normal.len();
+        let ended = Threads::new(threads, count)?.each(py, count, work, |(part, found)| {
+            if let (true, Some((index, failure))) = (strict, part.failures.first()) {
+                let place = if count == 1 { String::new() } else { format!("[{index}] ") };
+                return Err(failure.exception(&place));
+            }
+            columns.append(part);
+            values.extend(found);
+            Ok(())
+        });
+        let found = (columns.into_dictionary(py)?, values.into_pyarray(py));
+        ended.map_err(|error| keeping(py, error, || found.clone().into_bound_py_any(py)))?;
+        Ok(found)
+    }
+
     /// The impact of the two bodies with these motions, as the JSON that the program prints.
     fn encounter(
         &self,
@@ -152,6 +223,29 @@ impl BodyPair {
         let report = ImpactReport::new(&encounter, collision);
         report.require_finite().map_err(failed)?;
         document(IMPACT, &report, &engine, statistics.as_ref())
+    }
+}
+
+/// The numbers of an impact beside its collision, without those of its spheres.
+const NUMBERS: usize = 19;
+/// The numbers of each sphere.
+const NUMBERS_OF_SPHERE: usize = 6;
+
+/// Writes the numbers of an impact in the order that `stickslip.impacts` expects.
+fn write_numbers(report: &ImpactReport, out: &mut Vec<f64>) {
+    let ImpactReport { encounter, collision, outcome, .. } = report;
+    let (contact, observed, energy) = (&collision.contact, &outcome.observed, &outcome.energy);
+    out.extend([contact.kappa(), report.psi(), contact.damping()]);
+    out.extend([outcome.contact_time_s, encounter.impact.time_unit_s]);
+    out.extend([observed.patch_impact_angle_rad, observed.patch_rebound_angle_rad]);
+    out.push(observed.centre_e_t.unwrap_or(f64::NAN));
+    out.extend([observed.centre_impact_angle_rad, observed.centre_rebound_angle_rad]);
+    out.push(observed.impulse_ratio);
+    out.extend([energy.kinetic_before_j, energy.kinetic_after_j, energy.work_of_wall_j]);
+    out.extend([energy.sliding_j, energy.damping_j, energy.spring_left_j]);
+    out.extend([energy.compression_left_j, energy.unbalanced_j()]);
+    for motion in report.spheres() {
+        out.extend(motion.velocity_m_per_s.iter().chain(motion.spin_rad_per_s.iter()));
     }
 }
 

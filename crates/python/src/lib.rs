@@ -6,7 +6,8 @@
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
 //! `tables`, `studies` (results), `hybrid`, `formulas`, `many`, `tape` (systems of one's own),
-//! `families` (and what they depend on), `engines`, `parallel` and `failure` (what they share).
+//! `families` (and what they depend on), `style` (colours), `engines`, `parallel` and `failure` (what
+//! they share).
 
 mod arrays;
 mod background;
@@ -24,6 +25,7 @@ mod planes;
 mod stacks;
 mod steps;
 mod studies;
+mod style;
 mod tables;
 mod tape;
 
@@ -69,6 +71,8 @@ mod _native {
     use super::steps::TimeSteps;
     #[pymodule_export]
     use super::studies::{asymptote, compare_laws, converge, reproduce, reproduction_parts};
+    #[pymodule_export]
+    use super::style::style;
     #[pymodule_export]
     use super::tables::RestitutionTable;
     #[pymodule_export]

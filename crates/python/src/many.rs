@@ -9,7 +9,6 @@ use stickslip_plane::progress::{Progress, Report};
 use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
 
 use crate::background::watched;
-use crate::failure::bad_input;
 use crate::formulas::{FormulaSystem, Settings, word};
 
 /// Runs a system with many parameters, one row of `parameters` for each run, and from many
@@ -32,13 +31,13 @@ pub fn run_many<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (method, options) = settings.checked()?;
-    let compiled = system.0.compile().map_err(bad_input)?;
+    let compiled = system.compiled()?.clone();
     let rows_of = |array: &PyReadonlyArray2<'_, f64>| -> Vec<Vec<f64>> {
         array.as_array().rows().into_iter().map(|row| row.to_vec()).collect()
     };
     let (parameters, states) = (rows_of(&parameters), states.as_ref().map(rows_of));
     let (count, wanted) = (parameters.len(), times.as_ref().map_or(0, Vec::len));
-    let (ends_itself, system) = (system.0.ends_itself(), system.0.clone());
+    let (ends_itself, system) = (system.system.ends_itself(), system.system.clone());
     let explaining = system.clone();
     let one = move |index: usize| -> Result<Ended, String> {
         let runnable = compiled.with(&parameters[index]).map_err(|error| error.to_string())?;

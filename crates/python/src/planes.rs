@@ -54,7 +54,7 @@ impl Atlas {
         let verified = watched(py, threads, progress.as_ref(), work)?;
         let verified = verified.map_err(|error| of_atlas(&error))?;
         let document = Document::new(&verified);
-        Ok(Self { atlas: verified.atlas, document })
+        Ok(Self { atlas: verified, document })
     }
 
     /// The atlas in the text of a file that `trace` has written.
@@ -124,7 +124,8 @@ impl Atlas {
 
 impl Atlas {
     fn place(&self, kappa: f64, psi: f64) -> Result<(i64, f64), InvalidValue> {
-        let located = self.atlas.locate(&Contact::new(kappa, psi, 0.0)?);
+        Contact::new(kappa, psi, 0.0)?;
+        let located = self.atlas.locate([kappa, psi]);
         let region = match located.region {
             Ok(region) => i64::try_from(region).unwrap_or(i64::MAX),
             Err(Unlocated::OnBoundary { .. } | Unlocated::OnEdge { .. }) => -1,

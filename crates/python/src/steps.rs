@@ -57,6 +57,6 @@ impl TimeSteps {
 
     /// The errors over the step, as an SVG document.
     fn picture(&self) -> String {
-        self.0.picture().document()
+        stickslip_figure::pictures::time_steps::draw(&self.0).document()
     }
 }

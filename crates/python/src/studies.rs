@@ -1,7 +1,10 @@
 //! Studies: stiff springs, convergence, contact laws, and the paper checked.
 
+use std::fmt::Display;
+
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use stickslip_figure::pictures::studies::{self as pictures, Picture};
 use stickslip_model::Contact;
 use stickslip_plane::Range;
 use stickslip_plane::progress::Report;
@@ -25,7 +28,10 @@ pub fn asymptote(
     let kappa = Range { low: kappa.0, high: kappa.1 };
     let settings = stiff_springs::Settings { kappa, psi };
     settings.validate().map_err(bad_input)?;
-    run(py, threads, progress.as_ref(), move |report| stiff_springs::run(&settings, report))
+    run(py, threads, progress.as_ref(), move |report| {
+        let measured = stiff_springs::run(&settings, report)?;
+        Ok::<_, StudyError>((measured.study(), pictures::stiff_springs::draw(&measured)))
+    })
 }
 
 /// How accurate the integrators are, on collisions (κ, ψ, damping), or on the usual ones with this
@@ -48,7 +54,10 @@ pub fn converge(
         }
     };
     settings.validate().map_err(bad_input)?;
-    run(py, threads, progress.as_ref(), move |report| convergence::run(&settings, report))
+    run(py, threads, progress.as_ref(), move |report| {
+        let measured = convergence::run(&settings, report)?;
+        Ok::<_, StudyError>((measured.study(), pictures::convergence::draw(&measured)))
+    })
 }
 
 /// What the contact laws of particle codes do, on maps of so many cells in each direction.
@@ -65,7 +74,11 @@ pub fn compare_laws(
     let usual = contact_laws::Settings::default();
     let settings = contact_laws::Settings { damping, tangential_damping, cells, ..usual };
     settings.validate().map_err(bad_input)?;
-    run(py, threads, progress.as_ref(), move |report| contact_laws::run(&settings, report))
+    run(py, threads, progress.as_ref(), move |report| {
+        let computed = contact_laws::run(&settings, report).map_err(|it| it.to_string())?;
+        let pictures = pictures::contact_laws::draw(&computed).map_err(|it| it.to_string())?;
+        Ok::<_, String>((computed.study(), pictures))
+    })
 }
 
 /// The titles of the parts of the reproduction.
@@ -91,25 +104,29 @@ pub fn reproduce(
     let reproduction = Reproduction::new(cells, Spring::Reset);
     let work = move |_: Report<'_>| chosen.run(&reproduction);
     let section = watched(py, threads, progress.as_ref(), work)?.map_err(failed)?;
-    let study = dictionary(py, &section.study)?;
+    let study = dictionary(py, &section.study, &section.pictures)?;
     let objections: Vec<_> = section.objections.iter().map(ToString::to_string).collect();
     study.set_item("objections", objections)?;
     Ok(study)
 }
 
 /// What `make` makes, on so many threads, as a dictionary.
-pub fn run<'py>(
+pub fn run<'py, E: Display + Send + 'static>(
     py: Python<'py>,
     threads: usize,
     progress: Option<&Py<PyAny>>,
-    make: impl FnOnce(Report<'_>) -> Result<Study, StudyError> + Send + 'static,
+    make: impl FnOnce(Report<'_>) -> Result<(Study, Vec<Picture>), E> + Send + 'static,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let study = watched(py, threads, progress, make)?.map_err(failed)?;
-    dictionary(py, &study)
+    let (study, pictures) = watched(py, threads, progress, make)?.map_err(failed)?;
+    dictionary(py, &study, &pictures)
 }
 
 /// A study as a dictionary; `json` is text.
-fn dictionary<'py>(py: Python<'py>, study: &Study) -> PyResult<Bound<'py, PyDict>> {
+fn dictionary<'py>(
+    py: Python<'py>,
+    study: &Study,
+    pictures: &[Picture],
+) -> PyResult<Bound<'py, PyDict>> {
     let tables = PyList::empty(py);
     for table in &study.tables {
         let rows = PyList::empty(py);
@@ -127,9 +144,9 @@ fn dictionary<'py>(py: Python<'py>, study: &Study) -> PyResult<Bound<'py, PyDict
         let columns: Vec<_> = table.columns.iter().map(|one| (one.name, one.meaning)).collect();
         tables.append((table.name, &table.title, columns, rows))?;
     }
-    let pictures = study.pictures.iter();
+    let pictures = pictures.iter();
     let pictures: Vec<_> =
-        pictures.map(|one| (one.name, one.caption.clone(), one.svg.document())).collect();
+        pictures.map(|one| (&one.name, &one.caption, one.svg.document())).collect();
     let dictionary = PyDict::new(py);
     dictionary.set_item("name", study.name)?;
     dictionary.set_item("title", study.title)?;

@@ -196,7 +196,7 @@ impl Tape {
             end,
             ..System::default()
         };
-        Ok(FormulaSystem(system))
+        Ok(FormulaSystem::of(system))
     }
 }
 

@@ -2,12 +2,10 @@
 //! impact ratio.
 //!
 //! Start reading here; then, in this order: `settings` (which laws, over which window), `law` (what
-//! is computed of each), `findings`, `tables` and `pictures`.
+//! is computed of each), `findings` and `tables`.
 
 mod findings;
 mod law;
-mod names;
-mod pictures;
 mod settings;
 mod tables;
 
@@ -17,9 +15,9 @@ use stickslip_plane::progress::{Progress, Report};
 
 use crate::error::StudyError;
 use crate::study::Study;
-use law::LawOnPlane;
 
 pub use crate::limits::MOST_CELLS;
+pub use law::{Kinds, LawOnPlane};
 pub use settings::{Named, Settings, distinct};
 pub use tables::LAWS;
 
@@ -28,10 +26,13 @@ pub const SCHEMA: &str = "stickslip.contact-laws/1";
 /// The title of the study.
 pub const TITLE: &str = "Contact laws of particle codes";
 
-/// All that is computed.
-struct Laws<'a> {
-    settings: &'a Settings,
-    laws: Vec<LawOnPlane>,
+/// The laws of particle codes over a window.
+#[derive(Clone, Debug)]
+pub struct ContactLaws {
+    /// The laws and the window.
+    pub settings: Settings,
+    /// What each law does, in the order of the settings.
+    pub laws: Vec<LawOnPlane>,
 }
 
 /// Makes the study on the threads of the current pool. Progress counts laws.
@@ -41,14 +42,14 @@ struct Laws<'a> {
 /// use stickslip_studies::contact_laws::{self, Settings};
 ///
 /// let settings = Settings { cells: 4, ..Settings::default() };
-/// let study = contact_laws::run(&settings, progress::SILENT)?;
-/// assert_eq!(study.tables[0].rows.len(), settings.laws.len());
+/// let computed = contact_laws::run(&settings, progress::SILENT)?;
+/// assert_eq!(computed.study().tables[0].rows.len(), settings.laws.len());
 /// # Ok::<(), stickslip_studies::StudyError>(())
 /// ```
 ///
 /// # Errors
 /// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
+pub fn run(settings: &Settings, progress: Report<'_>) -> Result<ContactLaws, StudyError> {
     settings.validate()?;
     progress(Progress::Begin { steps: settings.laws.len() });
     let laws = settings.laws.par_iter().map(|named| {
@@ -57,11 +58,13 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyErro
         law
     });
     let laws = laws.collect::<Result<_, _>>()?;
-    Laws { settings, laws }.study()
+    Ok(ContactLaws { settings: settings.clone(), laws })
 }
 
-impl Laws<'_> {
-    fn study(&self) -> Result<Study, StudyError> {
+impl ContactLaws {
+    /// The study: findings, numbers and a table.
+    #[must_use]
+    pub fn study(&self) -> Study {
         let json = json!({
             "schema": SCHEMA,
             "window": { "kappa": self.settings.kappa, "psi": self.settings.psi },
@@ -70,14 +73,13 @@ impl Laws<'_> {
             "tangential_damping": self.settings.tangential_damping,
             "laws": self.laws.iter().map(LawOnPlane::json).collect::<Vec<_>>(),
         });
-        Ok(Study {
+        Study {
             name: "contact_laws",
             title: TITLE,
             headlines: Vec::new(),
             findings: self.findings(),
             json,
             tables: vec![self.table()],
-            pictures: self.pictures()?,
-        })
+        }
     }
 }

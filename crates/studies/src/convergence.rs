@@ -2,13 +2,12 @@
 //!
 //! Start reading here; then, in this order: `settings` (which collisions), [`plain_time`] (the law
 //! as the paper writes it), `measure` (the errors of one way to integrate), `series` (all ways,
-//! over steps and tolerances), `collisions` (the errors of `collide`), `findings` (what that says),
-//! `tables` and `pictures`.
+//! over steps and tolerances), `collisions` (the errors of `collide`), `findings` (what that says)
+//! and `tables`.
 
 mod collisions;
 mod findings;
 mod measure;
-mod pictures;
 pub mod plain_time;
 mod series;
 mod settings;
@@ -21,13 +20,13 @@ use stickslip_plane::progress::{Progress, Report};
 
 use crate::error::StudyError;
 use crate::study::Study;
-use collisions::Accuracy;
-use series::{ErrorRow, ErrorSeries, Scheme};
 
 pub use crate::limits::MOST_STIFFNESS;
+pub use collisions::{Accuracy, PairAccuracy};
 pub use measure::{
     Approximation, Coordinates, Deviation, Errors, Spread, Switching, integrate, measure, reference,
 };
+pub use series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
 pub use settings::Settings;
 pub use tables::{ORDERS, TIMES};
 
@@ -36,14 +35,15 @@ pub const SCHEMA: &str = "stickslip.convergence/1";
 /// The title of the study.
 pub const TITLE: &str = "Convergence of the integrators";
 
-/// All that is measured.
-struct Measurement {
+/// The errors of the integrators.
+#[derive(Clone, Debug)]
+pub struct Convergence {
     /// The collisions as they should be.
-    references: Vec<Collision>,
+    pub references: Vec<Collision>,
     /// The errors of all ways to integrate them.
-    series: Vec<ErrorSeries>,
+    pub series: Vec<ErrorSeries>,
     /// The errors of the methods at their usual tolerances.
-    accuracies: Vec<Accuracy>,
+    pub accuracies: Vec<Accuracy>,
 }
 
 /// Makes the study on the threads of the current pool.
@@ -51,7 +51,7 @@ struct Measurement {
 /// # Errors
 /// [`StudyError`]: there is no collision, one is too stiff or has no reference to compare with, or
 /// `collide` cannot compute it.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
+pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Convergence, StudyError> {
     settings.validate()?;
     let references = settings.contacts.iter().map(|contact| {
         reference(*contact).map_err(|source| CollisionFailure::new(contact, source))
@@ -59,7 +59,7 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyErro
     let references: Vec<_> = references.collect::<Result<_, _>>()?;
     let accuracies = references.iter().map(Accuracy::new).collect::<Result<_, _>>()?;
     let series = measure_all(&references, progress);
-    Ok(Measurement { references, series, accuracies }.study())
+    Ok(Convergence { references, series, accuracies })
 }
 
 /// Measures every row of every series. Each depends on itself alone.
@@ -85,8 +85,10 @@ fn measure_all(references: &[Collision], progress: Report<'_>) -> Vec<ErrorSerie
         .collect()
 }
 
-impl Measurement {
-    fn study(&self) -> Study {
+impl Convergence {
+    /// The study: findings, numbers and tables.
+    #[must_use]
+    pub fn study(&self) -> Study {
         let json = json!({
             "schema": SCHEMA,
             "reference": self.reference(),
@@ -100,7 +102,6 @@ impl Measurement {
             findings: self.findings(),
             json,
             tables: self.tables(),
-            pictures: self.pictures(),
         }
     }
 

@@ -1,6 +1,5 @@
 //! What can go wrong in a study.
 
-use stickslip_figure::FigureError;
 use stickslip_model::exact::ExactError;
 use stickslip_model::{CollisionFailure, InvalidValue, OtherLaw};
 
@@ -18,9 +17,6 @@ pub enum StudyError {
     /// The run of a system fails.
     #[error("the run failed: {0}")]
     Run(String),
-    /// A picture cannot be drawn.
-    #[error(transparent)]
-    Picture(#[from] FigureError),
     /// A collision cannot be computed.
     #[error(transparent)]
     Collision(#[from] CollisionFailure),

@@ -2,8 +2,9 @@
 //! accurate the integrators are, also for a system of one's own, and what the contact laws of
 //! particle codes do.
 //!
-//! Each study is a function from plain settings to a [`Study`]: findings in sentences, numbers,
-//! tables and pictures. It writes no files. Parallel loops run on the rayon pool of the caller.
+//! Each study is a function from plain settings to what was measured, of which a [`Study`] is made:
+//! findings in sentences, numbers and tables. `stickslip_figure::pictures` draws it. No study
+//! writes files. Parallel loops run on the rayon pool of the caller.
 //!
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
 //! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
@@ -17,8 +18,8 @@
 //! use stickslip_studies::stiff_springs::{self, Settings};
 //!
 //! let kappa = Range { low: 10.0, high: 100.0 };
-//! let study = stiff_springs::run(&Settings { kappa, psi: vec![1.0] }, progress::SILENT)?;
-//! assert_eq!(study.pictures[0].name, "asymptote_envelope");
+//! let measured = stiff_springs::run(&Settings { kappa, psi: vec![1.0] }, progress::SILENT)?;
+//! assert_eq!(measured.study().tables[0].name, "asymptote_envelope");
 //! # Ok::<(), stickslip_studies::StudyError>(())
 //! ```
 
@@ -35,7 +36,7 @@ pub mod three_parameters;
 pub mod unreset;
 
 pub use error::StudyError;
-pub use study::{Cell, Column, Picture, Study, Table};
+pub use study::{Cell, Column, Study, Table};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -7,7 +7,7 @@ pub const MOST_STIFFNESS: f64 = 1e6;
 
 /// The most cells along an axis of a map.
 pub const MOST_CELLS: usize = 1000;
-/// The most laws: as many pictures have names.
+/// The most laws.
 pub const MOST_LAWS: usize = 24;
 
 /// The stiffnesses of a study of stiff springs: from about 2 on all oscillations are alike, and at

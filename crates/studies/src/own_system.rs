@@ -3,15 +3,12 @@
 use rayon::prelude::*;
 use serde_json::json;
 use stickslip_expression::{Recording, Runnable, System, outcome_name};
-use stickslip_figure::Svg;
-use stickslip_figure::canvas::shape::Stroke;
-use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use stickslip_plane::progress::{Progress, Report};
 use stickslip_solver::dynamic::DynamicSwitch;
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError, Statistics};
 
 use crate::error::StudyError;
-use crate::study::{Cell, Column, Picture, Study, Table};
+use crate::study::{Cell, Column, Study, Table};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.system-convergence/1";
@@ -20,11 +17,8 @@ pub const SCHEMA: &str = "stickslip.system-convergence/1";
 const EXPONENTS: std::ops::RangeInclusive<i32> = -13..=-2;
 /// The tolerance of the reference, and the tolerance of the run that measures its error.
 const REFERENCE: [f64; 2] = [1e-15, 1e-14];
-/// The methods with their lines, in colours of Okabe and Ito.
-const METHODS: [(EmbeddedPair, Stroke); 2] = [
-    (EmbeddedPair::Dopri5, Stroke::full("#0072B2", 1.4)),
-    (EmbeddedPair::Dop853, Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" }),
-];
+/// The methods, in the order of lines in pictures.
+const METHODS: [EmbeddedPair; 2] = [EmbeddedPair::Dopri5, EmbeddedPair::Dop853];
 /// Errors from which on the methods are compared by their work.
 const WANTED: [f64; 2] = [1e-6, 1e-9];
 
@@ -42,28 +36,34 @@ pub struct Settings {
 }
 
 /// A run at a tolerance, beside the reference.
-struct Row {
-    method: EmbeddedPair,
-    tolerance: f64,
-    outcome: &'static str,
-    events: usize,
+#[derive(Clone, Copy, Debug)]
+pub struct ComparedRun {
+    /// The method.
+    pub method: EmbeddedPair,
+    /// The tolerance of a step, relative and absolute.
+    pub tolerance: f64,
+    /// How the run ended.
+    pub outcome: &'static str,
+    /// The number of events.
+    pub events: usize,
     /// Whether the same rules act in the same modes and order.
-    same: bool,
+    pub same: bool,
     /// The largest |Δy|/(1 + |y|) of a component at the end; NaN if the events are others.
-    state: f64,
+    pub state: f64,
     /// The largest |Δt| of an event, and of the end; NaN if the events are others.
-    time: f64,
-    work: Statistics,
+    pub time: f64,
+    /// The work of the run.
+    pub work: Statistics,
 }
 
 /// Makes the study on the threads of the current pool.
 ///
 /// # Errors
 /// [`StudyError::Run`]: the reference cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
+pub fn run(settings: &Settings, progress: Report<'_>) -> Result<SystemConvergence, StudyError> {
     let tasks: Vec<(EmbeddedPair, f64)> = METHODS
         .iter()
-        .flat_map(|(method, _)| EXPONENTS.rev().map(|power| (*method, 10_f64.powi(power))))
+        .flat_map(|method| EXPONENTS.rev().map(|power| (*method, 10_f64.powi(power))))
         .collect();
     progress(Progress::Begin { steps: REFERENCE.len() + tasks.len() });
     let attempt = |method, tolerance| {
@@ -75,15 +75,15 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyErro
     let reference = attempt(EmbeddedPair::Dop853, REFERENCE[0])
         .map_err(|error| StudyError::Run(settings.system.explained(&error)))?;
     let beside = attempt(EmbeddedPair::Dop853, REFERENCE[1]);
-    let doubt = Row::new(EmbeddedPair::Dop853, REFERENCE[1], &beside, &reference);
+    let doubt = ComparedRun::new(EmbeddedPair::Dop853, REFERENCE[1], &beside, &reference);
     let row = |&(method, tolerance): &(EmbeddedPair, f64)| {
-        Row::new(method, tolerance, &attempt(method, tolerance), &reference)
+        ComparedRun::new(method, tolerance, &attempt(method, tolerance), &reference)
     };
     let rows = tasks.par_iter().map(row).collect();
-    Ok(Measurement { settings, reference, doubt, rows }.study())
+    Ok(SystemConvergence { settings: settings.clone(), reference, doubt, rows })
 }
 
-impl Row {
+impl ComparedRun {
     fn new(
         method: EmbeddedPair,
         tolerance: f64,
@@ -131,17 +131,23 @@ impl Row {
     }
 }
 
-/// All that is measured.
-struct Measurement<'a> {
-    settings: &'a Settings,
-    reference: Recording,
+/// How the errors of a run fall with the tolerance.
+#[derive(Clone, Debug)]
+pub struct SystemConvergence {
+    /// The run.
+    pub settings: Settings,
+    /// The run that others are compared with.
+    pub reference: Recording,
     /// The run that measures the error of the reference.
-    doubt: Row,
-    rows: Vec<Row>,
+    pub doubt: ComparedRun,
+    /// The runs at all tolerances, by method, from coarse to fine.
+    pub rows: Vec<ComparedRun>,
 }
 
-impl Measurement<'_> {
-    fn study(&self) -> Study {
+impl SystemConvergence {
+    /// The study: findings, numbers and tables.
+    #[must_use]
+    pub fn study(&self) -> Study {
         let tables = vec![self.tolerances(), self.events()];
         let json = json!({
             "schema": SCHEMA,
@@ -162,11 +168,11 @@ impl Measurement<'_> {
             findings: self.findings(),
             json,
             tables,
-            pictures: vec![self.work(), self.errors()],
         }
     }
 
-    fn of(&self, method: EmbeddedPair) -> impl Iterator<Item = &Row> {
+    /// The runs of a method, from coarse to fine.
+    pub fn of(&self, method: EmbeddedPair) -> impl Iterator<Item = &ComparedRun> {
         self.rows.iter().filter(move |row| row.method == method)
     }
 
@@ -189,8 +195,8 @@ impl Measurement<'_> {
                 REFERENCE[0], REFERENCE[1]
             )
         }];
-        for (method, _) in METHODS {
-            let others: Vec<&Row> = self.of(method).filter(|row| !row.same).collect();
+        for method in METHODS {
+            let others: Vec<&ComparedRun> = self.of(method).filter(|row| !row.same).collect();
             let name = method.name();
             findings.push(match others.last() {
                 None => format!("{name} finds the same events at every tolerance."),
@@ -228,7 +234,7 @@ impl Measurement<'_> {
             Column::new("rejected", "rejected steps"),
             Column::new("right_hand_sides", "evaluations of the right-hand side"),
         ];
-        let row = |row: &Row| -> Vec<Cell> {
+        let row = |row: &ComparedRun| -> Vec<Cell> {
             vec![
                 row.method.name().into(),
                 row.tolerance.into(),
@@ -266,52 +272,6 @@ impl Measurement<'_> {
         let title = "Events of the reference".to_owned();
         let rows = self.reference.events.iter().map(row).collect();
         Table { name: "convergence_events", title, columns, rows }
-    }
-
-    fn errors(&self) -> Picture {
-        let axis = "tolerance of a step, relative and absolute";
-        Picture {
-            name: "convergence_tolerances",
-            caption: "Errors against the tolerance.".to_owned(),
-            svg: self.chart("Errors at tolerances", axis, |row| row.tolerance),
-        }
-    }
-
-    fn work(&self) -> Picture {
-        Picture {
-            name: "convergence_work",
-            caption: "Errors against evaluations of the right-hand side.".to_owned(),
-            svg: self.chart("Work and precision", "right-hand sides", |row| row.work.field as f64),
-        }
-    }
-
-    /// The errors over a value of each row.
-    fn chart(&self, title: &str, axis: &str, x: impl Fn(&Row) -> f64) -> Svg {
-        let mut series = Vec::new();
-        for (method, stroke) in METHODS {
-            let mut add = |what: &str, shape, error: fn(&Row) -> f64| {
-                let points = self.of(method).map(|row| (x(row), error(row)));
-                series.push(Series {
-                    name: format!("{}, {what}", method.name()),
-                    points: points.filter(|(_, error)| *error > 0.0).collect(),
-                    line: Some(stroke),
-                    mark: Some(Mark { shape, colour: stroke.colour }),
-                });
-            };
-            add("state at the end", Shape::Disc, |row| row.state);
-            add("times of events and of the end", Shape::Ring, |row| row.time);
-        }
-        let points = || series.iter().flat_map(|series| &series.points);
-        let axis_of = |name, of: fn(&(f64, f64)) -> f64| {
-            let values = points().map(of);
-            let ends = values.fold((f64::INFINITY, 0.0), |(low, high), value| {
-                (f64::min(low, value), f64::max(high, value))
-            });
-            ChartAxis::around(name, ends)
-        };
-        let (x, y) = (axis_of(axis, |it| it.0), axis_of("error", |it| it.1));
-        let title = format!("{}: {title}", self.settings.name);
-        chart::draw(&Chart { title: &title, x, y, series })
     }
 }
 

@@ -2,13 +2,12 @@
 //!
 //! Start reading here; then, in this order: `settings` (which stiffnesses and impact ratios),
 //! [`limit`] (maxima of full collisions), `maxima` (what is measured of them), `profile` (the inner
-//! problem beside them), `fit` (exponent and constant), `findings`, `tables` and `pictures`.
+//! problem beside them), `fit` (exponent and constant), `findings` and `tables`.
 
 mod findings;
 mod fit;
 pub mod limit;
 mod maxima;
-mod pictures;
 mod profile;
 mod settings;
 mod tables;
@@ -21,11 +20,12 @@ use stickslip_plane::progress::{Progress, Report};
 
 use crate::error::StudyError;
 use crate::study::Study;
-use fit::Fits;
-use limit::{BOUND_FACTOR, Excess};
-use maxima::{LargestRestitution, LargestVelocity, RangeStart};
-use profile::Profile;
+use limit::BOUND_FACTOR;
 
+pub use fit::{Estimate, Fits};
+pub use limit::Excess;
+pub use maxima::{LargestRestitution, LargestVelocity, MOST_RESOLVED, RangeStart};
+pub use profile::{ComparedCollision, CurvePoint, OtherStart, Profile};
 pub use settings::Settings;
 
 /// The name of the layout of the JSON, with its version.
@@ -36,29 +36,34 @@ pub const TITLE: &str = "The limit of stiff springs";
 /// Stiffnesses per decade.
 const PER_DECADE: f64 = 4.0;
 
-/// All that is measured.
-struct Measurement {
-    kappas: Vec<f64>,
-    /// For each ψ, by κ.
-    velocities: Vec<Vec<LargestVelocity>>,
-    /// For each range of ψ, by κ.
-    restitutions: Vec<Vec<LargestRestitution>>,
+/// How ε_t tends to 0 for stiff springs.
+#[derive(Clone, Debug)]
+pub struct StiffSprings {
+    /// The stiffnesses, in rising order.
+    pub kappas: Vec<f64>,
+    /// The largest final velocities, for each ψ, by κ.
+    pub velocities: Vec<Vec<LargestVelocity>>,
+    /// The largest |ε_t|, for each range of ψ, by κ.
+    pub restitutions: Vec<Vec<LargestRestitution>>,
     /// The ψ of `single`.
-    single_psi: f64,
+    pub single_psi: f64,
     /// κ and |w_final| at one ψ, as far as single oscillations are resolved.
-    single: Vec<(f64, f64)>,
-    profile: Profile,
-    peak: Peak,
-    excess: Excess,
-    /// `None` if too few collisions are stiff.
-    fits: Option<Fits>,
+    pub single: Vec<(f64, f64)>,
+    /// F(phase) of the inner problem.
+    pub profile: Profile,
+    /// The largest F.
+    pub peak: Peak,
+    /// Where the bound (27) is exceeded.
+    pub excess: Excess,
+    /// Exponent and constant; `None` if too few collisions are stiff.
+    pub fits: Option<Fits>,
 }
 
 /// Makes the study on the threads of the current pool.
 ///
 /// # Errors
 /// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
+pub fn run(settings: &Settings, progress: Report<'_>) -> Result<StiffSprings, StudyError> {
     settings.validate()?;
     let kappas = stiffnesses(settings.kappa);
     progress(Progress::Begin {
@@ -67,7 +72,7 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyErro
     let velocities = at_each(&kappas, &settings.psi, progress, LargestVelocity::measure)?;
     let restitutions = at_each(&kappas, &RangeStart::ALL, progress, LargestRestitution::measure)?;
     let single_psi = settings.psi[settings.psi.len() / 2];
-    let measurement = Measurement {
+    Ok(StiffSprings {
         single_psi,
         single: maxima::single(settings.kappa, single_psi)?,
         profile: Profile::measure(settings)?,
@@ -77,8 +82,7 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyErro
         kappas,
         velocities,
         restitutions,
-    };
-    Ok(measurement.study())
+    })
 }
 
 /// Stiffnesses evenly spread over the logarithm of the interval, both ends included.
@@ -110,8 +114,10 @@ fn at_each<V: Copy + Sync, T: Send>(
     values.iter().map(by_kappa).collect()
 }
 
-impl Measurement {
-    fn study(&self) -> Study {
+impl StiffSprings {
+    /// The study: findings, numbers and tables.
+    #[must_use]
+    pub fn study(&self) -> Study {
         let tables = self.tables();
         let mut json = json!({
             "schema": SCHEMA,
@@ -142,7 +148,6 @@ impl Measurement {
             findings: self.findings(),
             json,
             tables,
-            pictures: self.pictures(),
         }
     }
 }

@@ -1,11 +1,9 @@
-//! The result of a study: numbers for programs, tables for spreadsheets, pictures and sentences for
-//! people.
+//! The result of a study: numbers for programs, tables for spreadsheets, sentences for people.
 //!
-//! All texts are written in the markup of [`stickslip_figure::markup`].
+//! All texts are written in the markup of `stickslip_figure::markup`.
 
 use serde::Serialize;
 use serde_json::{Value, json};
-use stickslip_figure::Svg;
 
 /// The result of a study.
 #[derive(Debug)]
@@ -24,8 +22,6 @@ pub struct Study {
     pub json: Value,
     /// The same numbers as tables.
     pub tables: Vec<Table>,
-    /// The same numbers as pictures.
-    pub pictures: Vec<Picture>,
 }
 
 /// Rows of values.
@@ -61,17 +57,6 @@ pub enum Cell {
     Count(usize),
     /// Words.
     Text(String),
-}
-
-/// A picture with what a reader needs to understand it.
-#[derive(Debug)]
-pub struct Picture {
-    /// The stem of the name of its file.
-    pub name: &'static str,
-    /// What the picture shows.
-    pub caption: String,
-    /// The picture itself.
-    pub svg: Svg,
 }
 
 impl Column {

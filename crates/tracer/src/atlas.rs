@@ -2,15 +2,17 @@
 
 use std::fmt::Debug;
 
+use crate::doubts::Doubts;
 use crate::family::Family;
+use crate::names::{Names, Unnamed};
 use crate::options::{TraceError, TraceOptions};
 use crate::regions::finding::{Finding, SubdivisionError};
 use crate::regions::locate::Location;
 use crate::regions::subdivision::Subdivision;
-use crate::regions::verify::report::{Mismatch, Verification, VerifyError};
+use crate::regions::verify::report::{Mismatch, Reason, Unverified, Verification, VerifyError};
 use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
-use crate::tracing::state::State;
+use crate::tracing::tracer::state::State;
 use crate::window::{Point, Window};
 
 /// The options of an [`Atlas`].
@@ -153,42 +155,47 @@ impl<Label, Margin> Atlas<Label, Margin> {
             && self.verification.failed().next().is_none()
     }
 
-    /// What speaks against the atlas, in one sentence; `None` if it [agrees](Self::agrees).
+    /// What speaks against the atlas; `None` if it [agrees](Self::agrees).
+    #[must_use]
+    pub fn doubts(&self, names: &impl Names<Label, Margin>) -> Option<Doubts> {
+        if self.agrees() {
+            return None;
+        }
+        let Verification { mismatches, .. } = &self.verification;
+        let mismatch = |mismatch: &Mismatch<Label>| {
+            let Mismatch { checkpoint, region, expected, found, .. } = mismatch;
+            let [expected, found] = [expected, found].map(|label| names.text(label));
+            let place = names.place(&checkpoint.point);
+            format!("{place} has {found}, its region {region} {expected}")
+        };
+        let failed = |open: &Unverified<String>| {
+            let what = match &open.reason {
+                Reason::Location(_) => "it lies in no region",
+                Reason::NoLabel { region } => &format!("region {region} has no known switches"),
+                Reason::Run(error) => error,
+            };
+            format!("{}: {what}", names.place(&open.checkpoint.point))
+        };
+        let unresolved = self.unresolved.iter();
+        Some(Doubts {
+            finished: self.is_finished(),
+            mismatches: mismatches.iter().map(mismatch).collect(),
+            unresolved: unresolved
+                .map(|what| names.unresolved(what, self.plane.vertices()))
+                .collect(),
+            findings: self.verification.standing(&self.plane).map(ToString::to_string).collect(),
+            failed: self.verification.failed().map(failed).collect(),
+        })
+    }
+
+    /// What speaks against the atlas, in one sentence without names; `None` if it
+    /// [agrees](Self::agrees).
     #[must_use]
     pub fn objection(&self) -> Option<String>
     where
         Label: Debug,
     {
-        if self.agrees() {
-            return None;
-        }
-        let Verification { mismatches, euler, .. } = &self.verification;
-        let findings: Vec<_> = self.verification.standing(&self.plane).collect();
-        let unresolved = &self.unresolved;
-        let failed: Vec<_> = self.verification.failed().collect();
-        let first = if let Some(mismatch) = mismatches.first() {
-            let Mismatch { checkpoint, region, expected, found, .. } = mismatch;
-            let [x, y] = [checkpoint.point.x, checkpoint.point.y];
-            format!("({x:?}, {y:?}) has {found:?}, its region {region} {expected:?}")
-        } else if let Some(what) = unresolved.first() {
-            what.to_string()
-        } else if let Some(finding) = findings.first() {
-            finding.to_string()
-        } else if let Some(open) = failed.first() {
-            let point = open.checkpoint.point;
-            format!("({:?}, {:?}) has no label: {:?}", point.x, point.y, open.reason)
-        } else if euler.holds() {
-            "it is not finished".to_owned()
-        } else {
-            "Euler's formula does not hold".to_owned()
-        };
-        let counts = [mismatches.len(), unresolved.len(), findings.len(), failed.len()];
-        let [mismatches, unresolved, findings, failed] = counts;
-        let open = if self.is_finished() { "" } else { "not finished; " };
-        Some(format!(
-            "{open}{mismatches} mismatches, {unresolved} unresolved, {findings} findings, {failed} \
-             points without a label; the first: {first}"
-        ))
+        self.doubts(&Unnamed).map(|doubts| doubts.objection())
     }
 
     /// Whether the survey came to its end. If it was cancelled, all regions are in doubt, and

@@ -5,6 +5,7 @@ mod search;
 
 use crate::cubic::bernstein::each_root;
 use crate::curve::Node;
+use crate::lengths::Lengths;
 use crate::window::Point;
 
 /// A cubic curve in the plane, given by its Bézier points.
@@ -105,11 +106,11 @@ impl Cubic {
     pub fn monotone_cuts(&self) -> Vec<f64> {
         // Closer to an end, the coordinates on the two sides of an extremum differ by rounding
         // only.
-        const ENDS: f64 = 1e-9;
+        let ends = Lengths::PARTS.same;
         let [a, b, c] = self.hodograph();
         let mut cuts = Vec::new();
         let mut keep = |t: f64| {
-            if t > ENDS && t < 1.0 - ENDS {
+            if t > ends && t < 1.0 - ends {
                 cuts.push(t);
             }
         };
@@ -118,7 +119,7 @@ impl Cubic {
         // c′ × c″ is of degree 2, because the cubic terms cancel.
         each_root(&[a.perp(&b), 0.5 * a.perp(&c), b.perp(&c)], &mut keep);
         cuts.sort_by(f64::total_cmp);
-        cuts.dedup_by(|later, earlier| *later - *earlier < ENDS);
+        cuts.dedup_by(|later, earlier| *later - *earlier < ends);
         cuts
     }
 

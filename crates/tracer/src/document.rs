@@ -2,16 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 use stickslip_solver::InvalidValue;
+use stickslip_solver::margin::Margin;
 
 use crate::atlas::{Atlas, AtlasOptions, doubtful};
 use crate::curve::{Curve, Vertex};
+use crate::hybrid::Itinerary;
+use crate::names::{Names, RunNames};
 use crate::regions::finding::SubdivisionError;
 use crate::regions::region::Region;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::report::Verification;
 use crate::tracing::network::{TraceStatistics, Unresolved};
-use crate::tracing::stage::Stage;
-use crate::tracing::state::State;
+use crate::tracing::tracer::stage::Stage;
+use crate::tracing::tracer::state::State;
 use crate::window::Window;
 
 /// The name of the layout, with its version.
@@ -191,6 +194,26 @@ impl<Label: Clone + Ord, Margin: Clone> Document<Label, Margin> {
         let (statistics, rounds) = (self.statistics, self.rounds);
         within("rounds", 0, rounds)?;
         Ok(Atlas { plane, unresolved, verification, statistics, rounds, doubtful, unfinished })
+    }
+}
+
+impl Document<Itinerary, Margin> {
+    /// The document of an atlas of a hybrid system that was made with `options`.
+    #[must_use]
+    pub fn of_runs(
+        atlas: &Atlas<Itinerary, Margin>,
+        options: &AtlasOptions,
+        names: &RunNames,
+    ) -> Self {
+        let guards = names.guards.clone();
+        Self { guards, ..Self::new(atlas, options, &names.family, names.axes()) }
+    }
+
+    /// The names in an atlas of a hybrid system.
+    #[must_use]
+    pub fn names(&self) -> RunNames {
+        let Self { family, axes, guards, .. } = self;
+        RunNames { family: family.clone(), axes: axes.clone(), guards: guards.clone() }
     }
 }
 

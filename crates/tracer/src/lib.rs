@@ -78,7 +78,7 @@
 //!
 //! # The source
 //!
-//! Start reading in `tracing/trace.rs`. The modules in reading order:
+//! Start reading in `tracing/tracer/trace.rs`. The modules in reading order:
 //!
 //! - `window`: points and windows of the parameter plane
 //! - `family`: what is traced
@@ -86,23 +86,32 @@
 //! - `curve`: what a trace returns
 //! - `cubic`: curves between nodes
 //! - `options`: options and errors of a trace
+//! - `lengths`: what is close, short or accurate
+//! - `conditions`: points at which as many conditions hold as there are unknowns
 //! - `executor` and `watch`: threads, progress and cancellation, which the caller gives
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
+//! - `draft`: what an atlas has in the places of labels and margins
 //! - `survey`: tracing and verifying in turn, until nothing is missing
-//! - `atlas`: the result, with all that speaks against it
+//! - `atlas` and `doubts`: the result, with all that speaks against it
+//! - `names`: what an atlas calls parameters, labels and margins
 //! - `document`: atlases of any family, written and read back (feature `serde`)
 //! - `stack`: atlases over a third parameter, and where their structure changes
 
 mod atlas;
+pub mod conditions;
 mod cubic;
 mod curve;
 #[cfg(feature = "serde")]
 mod document;
+mod doubts;
+mod draft;
 mod executor;
 mod family;
 mod hybrid;
 mod inverse;
+mod lengths;
+mod names;
 mod options;
 mod polyline;
 mod regions;
@@ -117,12 +126,15 @@ pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
 #[cfg(feature = "serde")]
 pub use document::{Document, DocumentError, SCHEMA};
+pub use doubts::Doubts;
+pub use draft::Draft;
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
 pub use hybrid::{
     DynamicFamily, DynamicFired, DynamicModeOf, DynamicProblem, DynamicSetting, FamilyError,
     HybridFamily, Itinerary, ModeOf, Problem,
 };
+pub use names::{Names, RunNames, Unnamed};
 pub use options::{TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;
@@ -140,9 +152,8 @@ pub use stack::document::{LayerDocument, StackDocument};
 pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use stickslip_solver::InvalidValue;
-pub use survey::{Found, Survey, Surveyor};
+pub use survey::{DraftedOf, Surveyor};
 pub use tracing::branch::Branch;
-pub use tracing::count::Count;
 pub use tracing::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;
 pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
@@ -150,8 +161,9 @@ pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::seed::Seed;
 pub use tracing::special_points::SpecialPoint;
-pub use tracing::trace::trace;
 pub use tracing::tracer::Tracer;
+pub use tracing::tracer::count::Count;
+pub use tracing::tracer::trace::trace;
 pub use watch::{Progress, Report, Watch};
 pub use window::{Point, Window};
 

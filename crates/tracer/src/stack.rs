@@ -195,8 +195,8 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         let mut options = *options;
         options.atlas.trace.beyond = 0.0;
         let surveyor = Surveyor { options: options.atlas, executor, watch: watch.silently() };
-        let span = values[values.len() - 1] - values[0];
-        let mut search = Search::new(&family, *window, options, surveyor, watch, span);
+        let range = [values[0], values[values.len() - 1]];
+        let mut search = Search::new(&family, *window, options, surveyor, watch, range);
         watch.report(Progress::Begin { steps: values.len() });
         let mut samples = Vec::with_capacity(values.len());
         for &value in values {
@@ -239,17 +239,8 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         let of_layer = |layer: &Layer<Label, Margin>| {
             Some(format!("at the value {:?}: {}", layer.value, layer.atlas.objection()?))
         };
-        let of_change = |change: &Change<Label>| {
-            let [low, high] = change.between;
-            let what = if change.meeting.is_some() {
-                "several changes may lie between the values"
-            } else {
-                "nothing is known of what changes between the values"
-            };
-            change.is_doubtful().then(|| format!("{what} {low:?} and {high:?}"))
-        };
         let layers = self.layers.iter().find_map(of_layer);
-        layers.or_else(|| self.changes.iter().find_map(of_change))
+        layers.or_else(|| self.changes.iter().find_map(|change| change.objection("values")))
     }
 
     /// The labels of all regions at a value of the third parameter, in order; `None` inside the

@@ -1,11 +1,14 @@
 //! Tracing and verifying in turn: where runs disagree with the regions, the tracer looks again.
 
 use crate::atlas::{Atlas, AtlasError, AtlasOf, AtlasOptions};
+use crate::draft::{Draft, Own};
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
-use crate::options::TraceError;
-use crate::tracing::network::NetworkOf;
+use crate::options::TraceOptions;
+use crate::regions::finding::SubdivisionError;
+use crate::tracing::extrema::Extremum;
 use crate::tracing::tracer::Tracer;
+use crate::tracing::tracer::state::State;
 use crate::watch::Watch;
 use crate::window::{Point, Window};
 
@@ -64,32 +67,27 @@ impl Default for Surveyor<'static> {
     }
 }
 
-/// What one round of a survey finds.
-#[derive(Clone, Debug)]
-pub struct Found<T> {
-    /// The result, if no further round comes.
-    pub result: T,
-    /// Pairs of places between which something is missing, see
-    /// [`Verification::brackets`](crate::Verification::brackets).
-    pub brackets: Vec<[Point; 2]>,
-}
-
 /// How far a survey has come.
-#[derive(Clone, Debug)]
-pub struct Survey<T> {
+struct Survey<T> {
     /// The result of the last verified round. `None` if the survey was cancelled and the tracer has
     /// found something since.
-    pub result: Option<T>,
+    result: Option<T>,
     /// The number of the round, from 1.
-    pub round: usize,
+    round: usize,
     /// Whether the end was reached.
-    pub finished: bool,
+    finished: bool,
 }
 
 impl<T> Survey<T> {
     /// A survey that begins.
-    pub const BEGINNING: Self = Self { result: None, round: 1, finished: false };
+    const BEGINNING: Self = Self { result: None, round: 1, finished: false };
 }
+
+/// The atlas of a draft.
+pub type DraftedOf<D> = Atlas<<D as Draft>::Label, <D as Draft>::Margin>;
+
+/// Why there is no atlas of a draft.
+type DraftError<D> = AtlasError<<<D as Draft>::Family as Family>::Error>;
 
 impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
     /// The atlas that a [`Surveyor`] with these options makes on this thread.
@@ -130,7 +128,47 @@ impl<E> Surveyor<'_, E> {
     {
         let mut tracer = Tracer::new(family, window, &self.options.trace)?;
         tracer.require_few(&self.executor, &self.watch)?;
-        self.finish(family, &mut tracer, Survey::BEGINNING)
+        self.finish(&Own(family), &mut tracer, Survey::BEGINNING)
+    }
+
+    /// As [`Self::atlas`], for an atlas with other labels and margins than the family's, and other
+    /// labels that verify it. If something is in doubt, the window is traced with the [other
+    /// options](Draft::other_options) of the draft too. The result also has the places where curves
+    /// are extremal in a coordinate. An atlas that was cancelled cannot go on.
+    ///
+    /// # Errors
+    /// As [`Self::atlas`].
+    pub fn draw<D: Draft>(
+        &self,
+        draft: &D,
+        window: &Window,
+    ) -> Result<(DraftedOf<D>, Vec<Extremum>), DraftError<D>>
+    where
+        E: Executor<D::Family> + Copy,
+    {
+        let traced = |trace: TraceOptions| {
+            let surveyor = Surveyor { options: AtlasOptions { trace, ..self.options }, ..*self };
+            let mut tracer = Tracer::new(draft.family(), window, &trace)?;
+            tracer.require_few(&surveyor.executor, &surveyor.watch)?;
+            let atlas = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
+            Ok((atlas, tracer.extrema()?))
+        };
+        let first: Result<_, DraftError<D>> = traced(self.options.trace);
+        let first = first?;
+        if first.0.agrees() {
+            return Ok(first);
+        }
+        for trace in draft.other_options(&self.options.trace) {
+            if self.watch.is_cancelled() {
+                break;
+            }
+            if let Ok(other) = traced(trace)
+                && other.0.agrees()
+            {
+                return Ok(other);
+            }
+        }
+        Ok(first)
     }
 
     /// Goes on with an atlas that was cancelled, to the same result, bit for bit, as without the
@@ -151,58 +189,58 @@ impl<E> Surveyor<'_, E> {
         let (round, window) = (atlas.rounds, *atlas.plane.window());
         let result = unfinished.brackets.is_some().then_some(atlas);
         let mut tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
-        self.finish(family, &mut tracer, Survey { result, round, finished: false })
+        self.finish(&Own(family), &mut tracer, Survey { result, round, finished: false })
     }
 
-    /// The atlas of a tracer, which may have begun.
-    fn finish<F: Family>(
+    /// The atlas of a tracer, which may have begun: the tracer explores, the regions are verified,
+    /// and the tracer looks again where this finds that something is missing, as long as curves are
+    /// found and this comes closer: where no margins tell what is missing, each look only leaves
+    /// more places.
+    fn finish<D: Draft>(
         &self,
-        family: &F,
-        tracer: &mut Tracer<'_, F>,
-        begun: Survey<AtlasOf<F>>,
-    ) -> Result<AtlasOf<F>, AtlasError<F::Error>>
+        draft: &D,
+        tracer: &mut Tracer<'_, D::Family>,
+        begun: Survey<DraftedOf<D>>,
+    ) -> Result<DraftedOf<D>, DraftError<D>>
     where
-        E: Executor<F>,
+        E: Executor<D::Family>,
     {
-        let rounds = self.options.rounds;
-        let survey = self.survey(tracer, rounds, begun, |network, round| {
-            let mut atlas = Atlas::unverified(network, &self.options, round)?;
-            let labels = |portion: &[Point]| self.executor.labels(family, portion);
-            let labels = |points: &[Point]| self.watch.in_portions(points, labels);
-            if !atlas.verify(&self.options, labels)? {
-                return Ok(None);
-            }
-            let brackets = atlas.verification.brackets();
-            Ok::<_, AtlasError<F::Error>>(Some(Found { result: atlas, brackets }))
-        })?;
-        let mut atlas = match survey.result {
+        let Survey { result, round, finished } = self.survey(draft, tracer, begun)?;
+        let mut atlas = match result {
             Some(atlas) => atlas,
-            None => Atlas::unverified(tracer.network(), &self.options, survey.round)?,
+            None => self.unverified(draft, tracer, round)?.0,
         };
-        if !survey.finished {
-            atlas.unfinished = Some(Box::new(tracer.state()));
+        if !finished {
+            let State { network, uncertainties, suspects, probed, stage, brackets } =
+                tracer.state();
+            let network = draft.drawn(network);
+            atlas.unfinished =
+                Some(Box::new(State { network, uncertainties, suspects, probed, stage, brackets }));
         }
         Ok(atlas)
     }
 
-    /// The rounds themselves, for results of any kind: the tracer explores, `assess` makes a result
-    /// of the network and verifies it, and the tracer looks again where it finds that something is
-    /// missing, in up to `rounds` rounds, as long as curves are found and this comes closer: where
-    /// no margins tell what is missing, each look only leaves more places. `assess` returns `None`
-    /// if it was cancelled.
-    ///
-    /// # Errors
-    /// A run of the tracer fails, or `assess` does.
-    pub fn survey<F: Family, T, X>(
+    /// The regions of what a tracer has found, and the options that fit them.
+    fn unverified<D: Draft>(
         &self,
-        tracer: &mut Tracer<'_, F>,
-        rounds: usize,
-        begun: Survey<T>,
-        mut assess: impl FnMut(NetworkOf<F>, usize) -> Result<Option<Found<T>>, X>,
-    ) -> Result<Survey<T>, X>
+        draft: &D,
+        tracer: &Tracer<'_, D::Family>,
+        round: usize,
+    ) -> Result<(DraftedOf<D>, AtlasOptions), SubdivisionError> {
+        let network = draft.drawn(tracer.network());
+        let options = draft.fitted(&self.options, &network.curves);
+        Ok((Atlas::unverified(network, &options, round)?, options))
+    }
+
+    /// The rounds themselves.
+    fn survey<D: Draft>(
+        &self,
+        draft: &D,
+        tracer: &mut Tracer<'_, D::Family>,
+        begun: Survey<DraftedOf<D>>,
+    ) -> Result<Survey<DraftedOf<D>>, DraftError<D>>
     where
-        E: Executor<F>,
-        X: From<TraceError<F::Error>>,
+        E: Executor<D::Family>,
     {
         /// A look again comes closer if it leaves at most so many places, or so many times those of
         /// the round before.
@@ -220,19 +258,20 @@ impl<E> Surveyor<'_, E> {
                 }
                 round += 1;
             }
-            let Some(found) = assess(tracer.network(), round)? else {
+            let (mut atlas, options) = self.unverified(draft, tracer, round)?;
+            let labels = |portion: &[Point]| draft.checks(&self.executor, portion);
+            let labels = |points: &[Point]| self.watch.in_portions(points, labels);
+            if !atlas.verify(&options, labels)? {
                 return Ok(Survey { result: None, round, finished: false });
-            };
-            result = Some(found.result);
-            if round >= rounds {
-                return Ok(Survey { result, round, finished: true });
             }
-            let many = found.brackets.len();
-            if many > GROWTH[0].max(GROWTH[1] * last) {
+            let brackets = atlas.verification.brackets();
+            result = Some(atlas);
+            let many = brackets.len();
+            if round >= self.options.rounds || many > GROWTH[0].max(GROWTH[1] * last) {
                 return Ok(Survey { result, round, finished: true });
             }
             last = many;
-            tracer.begin_again(found.brackets);
+            tracer.begin_again(brackets);
         }
     }
 }

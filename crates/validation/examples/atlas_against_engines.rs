@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use stickslip::model::{Collider, exact};
-use stickslip::plane::CollisionPlane;
+use stickslip::plane::{CollisionEvent, CollisionLabel, CollisionPlane};
 use stickslip::solver::margin::Margin;
 use stickslip::tracer::{
     Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
@@ -36,7 +36,7 @@ const WINDOWS: [(Interval, Interval, f64); 7] = [
 /// How often a verification may send the tracer back.
 const ROUNDS: u64 = 8;
 
-type Atlas = Subdivision<Vec<usize>, Margin>;
+type Atlas = Subdivision<CollisionLabel, Margin>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let counts: Vec<usize> =
@@ -144,17 +144,17 @@ fn random_points(
     (0..count).map(point).collect()
 }
 
-fn labels(plane: &CollisionPlane, points: &[Point]) -> Vec<Result<Vec<usize>, String>> {
+fn labels(plane: &CollisionPlane, points: &[Point]) -> Vec<Result<CollisionLabel, String>> {
     points.par_iter().map(|point| label(plane, point)).collect()
 }
 
 /// The switches of a collision, by integration and by the exact solution.
-fn label(plane: &CollisionPlane, point: &Point) -> Result<Vec<usize>, String> {
+fn label(plane: &CollisionPlane, point: &Point) -> Result<CollisionLabel, String> {
     let contact = plane.contact(point).map_err(|error| error.to_string())?;
     let integrated = Collider::default().collide(contact).map_err(|error| error.to_string())?;
     let exact = exact::collide(contact).map_err(|error| error.to_string())?;
     if exact.itinerary() != integrated.itinerary() {
         return Err(format!("{} and {}", exact.itinerary(), integrated.itinerary()));
     }
-    Ok(CollisionPlane::label(&integrated))
+    Ok(CollisionEvent::label(&integrated))
 }

@@ -48,15 +48,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             let plane = frame.plane()?;
             let [wrong, open] = (0..points)
                 .into_par_iter()
-                .map(|point| checked(&found.atlas, &plane, point))
+                .map(|point| checked(&found, &plane, point))
                 .map(|checked| [checked == Some(false), checked.is_none()].map(u64::from))
                 .reduce(|| [0; 2], |one, two| [one[0] + two[0], one[1] + two[1]]);
             all_wrong += wrong;
             println!(
                 "{} boundaries, {} regions, {seconds:.0} s; {wrong} wrong, {open} not in a region; {}",
-                found.atlas.regions.curves().len(),
-                found.atlas.regions.regions().len(),
-                found.report.objection().as_deref().unwrap_or("complete")
+                found.regions.curves().len(),
+                found.regions.regions().len(),
+                found.objection().as_deref().unwrap_or("complete")
             );
         }
     }
@@ -68,7 +68,7 @@ fn checked(atlas: &Atlas, plane: &CollisionPlane, seed: u64) -> Option<bool> {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut value = |Range { low, high }: Range| low * (high / low).powf(random.f64());
     let contact = plane.contact(&plane.point(value(KAPPA), value(PSI))).ok()?;
-    let region = atlas.locate(&contact).region.ok()?;
+    let region = atlas.locate([contact.kappa(), contact.psi()]).region.ok()?;
     let collision = Collider::default().collide(contact).ok()?;
     Some(atlas.itinerary(region) == collision.itinerary())
 }

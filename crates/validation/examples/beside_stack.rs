@@ -49,15 +49,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         let found = atlas::trace(frame, frame.tolerances().usual, SILENT)?;
         let seconds = start.elapsed().as_secs_f64();
         let mut regions = Regions::new();
-        for region in 0..found.atlas.regions.regions().len() {
-            *regions.entry(found.atlas.itinerary(region).to_owned()).or_default() += 1;
+        for region in 0..found.regions.regions().len() {
+            *regions.entry(found.itinerary(region).to_owned()).or_default() += 1;
         }
         let expected =
             stack.regions(damping).ok_or("a damping is inside the bracket of a change")?;
-        let objection = found.report.objection();
+        let objection = found.objection();
         println!(
             "| {damping:?} | {} | {} | {} | {} | {seconds:.1} s |",
-            found.atlas.regions.curves().len(),
+            found.regions.curves().len(),
             regions.values().sum::<i64>(),
             if regions == expected { "yes" } else { "no" },
             objection.as_deref().unwrap_or("none")

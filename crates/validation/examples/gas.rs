@@ -10,6 +10,7 @@ use std::{env, fs};
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Series};
+use stickslip_figure::style::{BLUE, VERMILION};
 
 /// A line of a file: time in s, and the energies of motion and of spin.
 type State = [f64; 3];
@@ -28,12 +29,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let full = Stroke::full;
     let dashed = |colour| Stroke { dashes: "6 4", ..full(colour, 1.6) };
-    let (blue, orange) = ("#0072B2", "#D55E00");
     let series = vec![
-        line("motion, ε_t of the table", &table, 1, full(blue, 1.6)),
-        line("spin, ε_t of the table", &table, 2, full(orange, 1.6)),
-        line("motion, constant ε_t", &constant, 1, dashed(blue)),
-        line("spin, constant ε_t", &constant, 2, dashed(orange)),
+        line("motion, ε_t of the table", &table, 1, full(BLUE, 1.6)),
+        line("spin, ε_t of the table", &table, 2, full(VERMILION, 1.6)),
+        line("motion, constant ε_t", &constant, 1, dashed(BLUE)),
+        line("spin, constant ε_t", &constant, 2, dashed(VERMILION)),
     ];
     let last = table[table.len() - 1][0].max(constant[constant.len() - 1][0]);
     let axis = |name, range| ChartAxis { name, range, scale: Scale::Logarithmic };

@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let damping = (pair[0].damping * pair[1].damping).sqrt();
             let Some(expected) = regions(&made, &pair[0], damping) else { continue };
             let atlas = atlas::trace(Frame { damping, ..frame }, tolerance, SILENT)?;
-            objections.extend(atlas.report.objection());
+            objections.extend(atlas.objection());
             let direct = DampingLayer { damping, atlas, as_stacked: None };
             if signed(&direct) != expected {
                 objections.push(format!("at {damping:?} there are other regions"));
@@ -80,8 +80,8 @@ fn regions(
             return None;
         }
         for effect in &change.effects {
-            let count: &mut i64 = counts.entry(effect.itinerary.clone()).or_default();
-            *count += if matches!(effect.effect, "born" | "splits") { 1 } else { -1 };
+            let count: &mut i64 = counts.entry(effect.label().clone()).or_default();
+            *count += if matches!(effect.name(), "born" | "splits") { 1 } else { -1 };
         }
     }
     counts.retain(|_, count| *count != 0);

@@ -45,9 +45,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let outcome = match atlas::trace(frame, tolerance, SILENT) {
             Ok(found) => {
                 let seconds = start.elapsed().as_secs_f64();
-                let wrong = wrong(&found.atlas, &mut random, points);
-                let regions = &found.atlas.regions;
-                let objection = found.report.objection();
+                let wrong = wrong(&found, &mut random, points);
+                let regions = &found.regions;
+                let objection = found.objection();
                 println!(
                     "{} curves, {} regions, {seconds:.2} s, {} wrong {}",
                     regions.curves().len(),
@@ -109,8 +109,8 @@ fn law(random: &mut fastrand::Rng) -> Law {
 
 /// The points whose region has other switches than their collisions.
 fn wrong(atlas: &atlas::Atlas, random: &mut fastrand::Rng, count: u64) -> Vec<[f64; 2]> {
-    let Frame { kappa, psi, .. } = atlas.frame;
-    let plane = atlas.frame.plane().expect("it has been traced");
+    let [kappa, psi] = atlas.plane.sheet().sides;
+    let plane = atlas.plane;
     let even = |Range { low, high }: Range, part: f64| low + part * (high - low);
     let log = |Range { low, high }: Range, part: f64| low * (high / low).powf(part);
     let points: Vec<[f64; 2]> = (0..count)
@@ -123,7 +123,7 @@ fn wrong(atlas: &atlas::Atlas, random: &mut fastrand::Rng, count: u64) -> Vec<[f
         .collect();
     let is_wrong = |&[kappa, psi]: &[f64; 2]| {
         let Ok(contact) = plane.contact_at([kappa, psi]) else { return true };
-        let Ok(region) = atlas.locate(&contact).region else { return true };
+        let Ok(region) = atlas.locate([kappa, psi]).region else { return true };
         let found = Engine::Auto.collide(contact);
         found.map_or(true, |(found, _)| found.itinerary() != atlas.itinerary(region))
     };

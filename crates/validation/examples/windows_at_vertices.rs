@@ -25,10 +25,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(law) = words.next() {
         frame.law = presets::find(&law).ok_or(law)?.law;
     }
-    let found = traced(frame)?.atlas;
+    let found = traced(frame)?;
     let places = found.regions.vertices().iter();
     let places: Vec<(bool, [f64; 2])> = places
-        .map(|vertex| (!vertex.kind.is_on_window(), found.chart.parameters(&vertex.point)))
+        .map(|vertex| (!vertex.kind.is_on_window(), found.plane.parameters(&vertex.point)))
         .collect();
     let mut tally = Tally::default();
     for (_, place) in &places {
@@ -59,7 +59,7 @@ fn range(at: f64, [below, above]: [f64; 2]) -> Range {
     Range { low: at * (1.0 - below), high: at * (1.0 + above) }
 }
 
-fn traced(frame: Frame) -> Result<atlas::VerifiedAtlas, atlas::AtlasError> {
+fn traced(frame: Frame) -> Result<atlas::Atlas, atlas::AtlasError> {
     atlas::trace(frame, frame.tolerances().usual, SILENT)
 }
 
@@ -75,7 +75,7 @@ impl Tally {
         let objection = match traced(Frame { kappa, psi, ..frame }) {
             Ok(found) => {
                 self.mismatches += found.report.mismatches.len();
-                found.report.objection()
+                found.objection()
             }
             Err(error) => Some(error.to_string()),
         };

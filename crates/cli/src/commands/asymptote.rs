@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use stickslip_figure::pictures::studies as pictures;
 use stickslip_files::input::{number, range};
 use stickslip_plane::Range;
 use stickslip_studies::stiff_springs::{self, Settings};
@@ -42,7 +43,10 @@ pub fn run(arguments: &AsymptoteArguments) -> Result<(), Failure> {
     let AsymptoteArguments { kappa, psi, out, threads } = arguments;
     let settings = Settings { kappa: *kappa, psi: psi.clone() };
     settings.validate().map_err(study::refused)?;
-    study::run(out, *threads, |report| stiff_springs::run(&settings, report))
+    study::run(out, *threads, |report| {
+        let measured = stiff_springs::run(&settings, report)?;
+        Ok((measured.study(), pictures::stiff_springs::draw(&measured)))
+    })
 }
 
 /// What `asymptote --help` says first.

@@ -5,22 +5,21 @@ use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::Given;
 use stickslip_files::input::rows::{Columns, Input};
 use stickslip_files::output::csv::Rows;
-use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
-use stickslip_files::output::picture::PictureFile;
+use stickslip_files::output::picture::{AnimationFile, PictureFile};
 use stickslip_files::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
 use stickslip_model::{CollisionFailure, Contact, Engine, document};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::output::text;
 use crate::shared::Format;
 use crate::shared::batch::{self, BatchArguments, BatchFiles, Work};
 use crate::shared::collision::{CollisionArguments, contact};
 use crate::shared::course::{Course, CourseArguments};
-use crate::shared::files::{self, plotted};
+use crate::shared::files::{self, plotted, require_different};
 use crate::shared::law::{self, LawArguments};
-use crate::shared::method::{Method, MethodArguments};
+use crate::shared::method::MethodArguments;
 
 /// Compute one collision, or a file of them
 #[derive(Debug, clap::Args)]
@@ -58,6 +57,10 @@ pub struct CollideArguments {
     #[arg(conflicts_with = "batch")]
     pub format: Format,
 
+    /// Add the work of the integrator to the table
+    #[arg(long, help_heading = "Output", conflicts_with = "batch")]
+    pub verbose: bool,
+
     /// Add the expected error of ε_t and the distance of the itinerary from changing
     #[arg(long, help_heading = "Output")]
     pub estimate: bool,
@@ -66,6 +69,11 @@ pub struct CollideArguments {
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
+
+    /// Animation of the same picture
+    #[arg(long, value_name = "FILE.gif", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(value_parser = files::animation())]
+    pub animate: Option<AnimationFile>,
 
     /// The course of one collision.
     #[command(flatten, next_help_heading = "Output")]
@@ -85,7 +93,7 @@ pub fn run(arguments: &CollideArguments) -> Result<(), Failure> {
     let CollisionArguments { mu, alpha, damping } = arguments.collision;
     let CollideArguments { kappa, psi, ratio, .. } = *arguments;
     let (law, tangential) = arguments.law.chosen()?;
-    let engine = arguments.method.engine(Method::Dop853, (law, tangential))?;
+    let engine = arguments.method.engine((law, tangential))?;
     let tangential_damping = arguments.law.tangential_damping;
     let given = Given { kappa, psi, ratio, mu, alpha, damping, tangential_damping, law };
     let law_file = law::file(arguments.law.law.as_deref());
@@ -99,11 +107,16 @@ pub fn run(arguments: &CollideArguments) -> Result<(), Failure> {
 fn one(contact: &Contact, engine: &Engine, arguments: &CollideArguments) -> Result<(), Failure> {
     let plot = arguments.plot.as_ref();
     let law_file = law::file(arguments.law.law.as_deref());
-    let course = arguments.course.file(&[plotted(plot)], &[law_file])?;
+    let animate = arguments.animate.as_ref();
+    let outputs = [plotted(plot), ("--animate", animate.map(AnimationFile::path))];
+    require_different(&outputs, &[law_file])?;
+    let course = arguments.course.file(&outputs, &[law_file])?;
     let failed = |source| CollisionFailure::new(contact, source);
     plot.map_or(Ok(()), PictureFile::probe)?;
+    animate.map_or(Ok(()), AnimationFile::probe)?;
     course.map_or(Ok(()), Course::probe)?;
-    let (collision, statistics, history) = if plot.is_some() || course.is_some() {
+    let followed = plot.is_some() || animate.is_some() || course.is_some();
+    let (collision, statistics, history) = if followed {
         let (collision, statistics, history) = engine.followed(*contact).map_err(failed)?;
         (collision, statistics, Some(history))
     } else {
@@ -118,12 +131,21 @@ fn one(contact: &Contact, engine: &Engine, arguments: &CollideArguments) -> Resu
             |plot: &PictureFile| plot.write(Ok(pictures::collision::draw(&collision, history)));
         let picture = plot.map(draw).transpose()?;
         let course = course.map(|course| course.scaled(&collision, history)).transpose()?;
-        publish(picture.into_iter().chain(course))?;
+        let film =
+            |file: &AnimationFile| file.write(pictures::collision::frames(&collision, history));
+        let animation = animate.map(film).transpose()?;
+        deliver(picture.into_iter().chain(animation).chain(course), "")?;
     }
-    let estimates = (estimate.as_ref(), statistics.as_ref());
+    let (estimate, statistics) = (estimate.as_ref(), statistics.as_ref());
     print(|out| match arguments.format {
-        Format::Json => json::write(out, document::COLLISION, &collision, engine, estimates),
-        Format::Table => text::write(out, engine, &collision, estimates),
+        Format::Json => {
+            let details = (estimate, statistics);
+            json::write(out, document::COLLISION, &collision, engine, details)
+        }
+        Format::Table => {
+            let work = statistics.filter(|_| arguments.verbose);
+            text::write(out, engine, &collision, (estimate, work))
+        }
     })
 }
 
@@ -137,7 +159,7 @@ fn many(
     let work = Collisions { engine, estimate };
     let columns = Columns::of_collisions(work.names());
     let input = Input::open(files.input, |header| columns.recipe(header, given))?;
-    batch::run(files, input, &work)
+    batch::run(files, input, &work, &format!(" by {}", text::describe(&engine)))
 }
 
 /// Collisions in scaled parameters.
@@ -228,19 +250,19 @@ Course:
   spaced and at every switch, whose number, from 0, is in the column switch.
 
 Accuracy at the default tolerances, for kappa 1e-6 to 1e6, psi 1e-10 to 10, damping up to 1e4:
+  exact   1e-15 (1 + sqrt(kappa)) in eps_t, 1e-15 in the others
   dop853  2e-11 in eps_t; 4e-12 in contact_time and eps_n, relative
   dopri5  1e-7 in eps_t; 1e-9 in contact_time and eps_n, relative
-  exact   1e-15 (1 + sqrt(kappa)) in eps_t, 1e-15 in the others
-  Errors are proportional to the tolerance. --estimate tells the error to expect of a collision.
+  Errors of both are proportional to the tolerance. --estimate tells the error to expect of a collision.
 
 Examples:
   stickslip collide --kappa 63 --psi 0.5
   stickslip collide --kappa 63 --psi 0.5 --plot collision.svg
-  stickslip collide --kappa 63 --psi 0.5 --course course.csv
-  stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method exact
+  stickslip collide --kappa 63 --psi 0.5 --course course.csv --animate collision.gif
+  stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method dop853 --verbose
   stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
   stickslip collide --kappa 18 --psi 1.99 --estimate
   stickslip collide --batch IN.csv --out OUT.csv --events EV.csv --threads 4
-  stickslip collide --batch PSI.csv --kappa 18 --method exact --out OUT.csv
+  stickslip collide --batch PSI.csv --kappa 18 > OUT.csv
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use stickslip_figure::pictures::studies as pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::Given;
 use stickslip_studies::convergence::{self, Settings};
@@ -64,10 +65,16 @@ pub fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     let ConvergeArguments { system, out, threads, .. } = arguments;
     if let Some(path) = system {
         let settings = own_system(path, &arguments.given)?;
-        return study::run(out, *threads, |report| own_system::run(&settings, report));
+        return study::run(out, *threads, |report| {
+            let measured = own_system::run(&settings, report)?;
+            Ok((measured.study(), pictures::own_system::draw(&measured)))
+        });
     }
     let settings = collisions(arguments)?;
-    study::run(out, *threads, |report| convergence::run(&settings, report))
+    study::run(out, *threads, |report| {
+        let measured = convergence::run(&settings, report)?;
+        Ok((measured.study(), pictures::convergence::draw(&measured)))
+    })
 }
 
 /// The collisions of the options, or the usual ones.

@@ -4,10 +4,10 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::source::{is_standard_input, shown};
 use stickslip_files::input::{bodies, law, measured, number, range};
-use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Law, presets};
@@ -15,7 +15,7 @@ use stickslip_plane::Range;
 use stickslip_practice::fit::{self, Bodies, Free, Settings, Values};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::shared::Format;
 use crate::shared::collision::reduction;
 use crate::shared::files::{self, plotted, require_different};
@@ -115,11 +115,11 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
     plot.map_or(Ok(()), PictureFile::probe)?;
     let result = arguments.threads.with_steps(|report| fit::run(&settings, report))??;
     if let Some(plot) = plot {
-        let picture = result.picture().ok_or_else(|| {
+        let picture = pictures::fit::draw(&result).ok_or_else(|| {
             let expected = "expected data at an angle above 0";
             Failure::Usage(format!("--plot has nothing to draw; {expected}"))
         })?;
-        publish([plot.write(Ok(picture))?])?;
+        deliver([plot.write(Ok(picture))?], "")?;
     }
     print(|out| match arguments.format {
         Format::Json => json::lines(out, &result),

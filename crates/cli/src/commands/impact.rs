@@ -4,25 +4,26 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use stickslip_figure::pictures;
 use stickslip_files::input::bodies::{self, ImpactReading, Velocities, VelocitiesError};
 use stickslip_files::input::rows::Input;
 use stickslip_files::input::{law, parameter};
 use stickslip_files::output::csv::Rows;
-use stickslip_files::output::file::publish;
 use stickslip_files::output::impact_rows::{self, EVENTS};
 use stickslip_files::output::json;
+use stickslip_files::output::picture::PictureFile;
 use stickslip_model::spheres::quantity::{self, Quantity};
 use stickslip_model::spheres::{Encounter, ImpactReport};
 use stickslip_model::{CollisionFailure, Engine, Law, document};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::shared::Format;
 use crate::shared::batch::{self, BatchArguments, BatchFiles, Work};
 use crate::shared::course::{Course, CourseArguments};
-use crate::shared::files::require_one_standard_input;
+use crate::shared::files::{self, plotted, require_different, require_one_standard_input};
 use crate::shared::law::file as law_file;
-use crate::shared::method::{Method, MethodArguments};
+use crate::shared::method::MethodArguments;
 
 /// Compute the impact of two spheres, or of a sphere and a wall, in SI units, or a file of them
 #[derive(Debug, clap::Args)]
@@ -48,6 +49,15 @@ pub struct ImpactArguments {
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     #[arg(conflicts_with = "batch")]
     pub format: Format,
+
+    /// Add the work of the integrator to the table
+    #[arg(long, help_heading = "Output", conflicts_with = "batch")]
+    pub verbose: bool,
+
+    /// Picture of the forces and the velocity of one impact, which is printed as well
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(value_parser = files::picture())]
+    pub plot: Option<PictureFile>,
 
     /// The course of one impact.
     #[command(flatten)]
@@ -109,7 +119,9 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     let name = arguments.law.as_deref();
     let files = arguments.batch.files(&[("--bodies", bodies.as_deref()), law_file(name)])?;
     let inputs = [("FILE.json", file.as_deref()), law_file(name)];
-    let course = arguments.course.file(&[], &inputs)?;
+    let plot = arguments.plot.as_ref();
+    require_different(&[plotted(plot)], &inputs)?;
+    let course = arguments.course.file(&[plotted(plot)], &inputs)?;
     let law = law::by_name_or_file(name)?;
     let engines = Engines::new(name, law, &arguments.method)?;
     if let Some(files) = files {
@@ -118,20 +130,27 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     let velocities = Velocities::new(arguments.velocities.all()).map_err(refused)?;
     let file = file.as_deref().unwrap_or(Path::new("-"));
     let encounter = bodies::read_encounter(file, law, velocities)?;
-    one(&encounter, &engines.of(&encounter)?, course, arguments.format)
+    one(&encounter, &engines.of(&encounter)?, course, arguments)
 }
 
-/// Computes one impact, writes its course if that is wanted, and prints it.
+/// Computes one impact, draws it and writes its course if that is wanted, and prints it.
 fn one(
     encounter: &Encounter,
     engine: &Engine,
     course: Option<Course<'_>>,
-    format: Format,
+    arguments: &ImpactArguments,
 ) -> Result<(), Failure> {
     let contact = encounter.contact();
     let failed = |source| CollisionFailure::new(&contact, source);
+    let plot = arguments.plot.as_ref();
+    if plot.is_some() && encounter.is_central() {
+        let reason = "--plot: nothing is tangential in a central impact; expected another impact, \
+                      or --course, which has the normal force";
+        return Err(Failure::Usage(reason.to_owned()));
+    }
+    plot.map_or(Ok(()), PictureFile::probe)?;
     course.map_or(Ok(()), Course::probe)?;
-    let (collision, statistics, history) = if course.is_some() {
+    let (collision, statistics, history) = if plot.is_some() || course.is_some() {
         let (collision, statistics, history) = engine.followed(contact).map_err(failed)?;
         (collision, statistics, Some(history))
     } else {
@@ -140,13 +159,19 @@ fn one(
     };
     let impact = ImpactReport::new(encounter, collision);
     impact.require_finite().map_err(|error| failed(error.into()))?;
-    if let (Some(course), Some(history)) = (course, &history) {
-        publish([course.in_si(encounter, (&impact.collision, history))?])?;
+    if let Some(history) = &history {
+        let course = course.map(|course| course.in_si(encounter, (&impact.collision, history)));
+        let draw =
+            |plot: &PictureFile| plot.write(Ok(pictures::collision::draw_impact(&impact, history)));
+        let picture = plot.map(draw).transpose()?;
+        deliver(picture.into_iter().chain(course.transpose()?), "")?;
     }
     let statistics = statistics.as_ref();
-    print(|out| match format {
+    print(|out| match arguments.format {
         Format::Json => json::write(out, document::IMPACT, &impact, engine, (None, statistics)),
-        Format::Table => table::write(out, engine, &impact, statistics),
+        Format::Table => {
+            table::write(out, engine, &impact, statistics.filter(|_| arguments.verbose))
+        }
     })
 }
 
@@ -170,7 +195,7 @@ fn many(
     let work = Impacts { engines, names: impact_rows::names(bodies.spheres()) };
     let columns = |header: &_| bodies.with_columns(header, velocities, &work.names);
     let input = Input::open(files.input, columns)?;
-    batch::run(files, input, &work)
+    batch::run(files, input, &work, "")
 }
 
 /// What computes impacts under a law, whatever their tangential damping.
@@ -187,7 +212,7 @@ impl<'a> Engines<'a> {
     /// # Errors
     /// [`Failure::Usage`]: a tolerance would have no effect.
     fn new(name: Option<&'a str>, law: Law, method: &MethodArguments) -> Result<Self, Failure> {
-        let engine = |damping| method.engine(Method::Dop853, (law, damping));
+        let engine = |damping| method.engine((law, damping));
         Ok(Self { name, engines: [engine(0.0)?, engine(1.0)?] })
     }
 
@@ -314,6 +339,7 @@ Course:
 
 Examples:
   stickslip impact examples/steel_spheres.json
+  stickslip impact examples/steel_spheres.json --plot impact.svg
   stickslip impact examples/glass_on_wall.json --format json
   stickslip impact examples/hooke_spheres.json --law gran/hooke/history
   stickslip impact examples/steel_pair.json --speed 2 --angle 0.5 --course course.csv

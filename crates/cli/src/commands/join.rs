@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use stickslip_files::input::source::is_standard_input;
 use stickslip_files::map::{Parts, Stored};
-use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
 
-use super::map::{MapFormat, finish, require_all};
+use super::map::{IN_ARRAYS, MapFormat, computed, finish, require_all};
 use crate::error::Failure;
+use crate::output::console::deliver;
 use crate::output::progress::Bar;
 use crate::shared::files::{self, plotted, require_different};
 use crate::version;
@@ -51,8 +52,10 @@ pub fn run(arguments: &JoinArguments) -> Result<(), Failure> {
     let bar = Bar::points(parts.task().points());
     let failures = parts.check(|points| bar.advance(points))?;
     drop(bar);
-    publish(finish(&parts, file, format, plot.as_ref())?)?;
-    require_all(&failures, &parts, out)
+    let task = parts.task();
+    let found = computed(task.points(), &failures, &task.engine);
+    deliver(finish(&parts, Some((file, format)), plot.as_ref())?, found)?;
+    require_all(&failures, &parts, (out, IN_ARRAYS))
 }
 
 /// What `join --help` says first.

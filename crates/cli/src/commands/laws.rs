@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use stickslip_figure::pictures::studies as pictures;
 use stickslip_files::input::law;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::output::directory::prepare;
@@ -11,6 +12,8 @@ use stickslip_files::output::file::write;
 use stickslip_files::output::json;
 use stickslip_files::output::study::write_study;
 use stickslip_model::presets::{self, Preset};
+use stickslip_reproduction::ReproductionError;
+use stickslip_reproduction::figures::Section;
 use stickslip_studies::contact_laws::{self, Settings};
 
 use crate::error::Failure;
@@ -115,12 +118,14 @@ struct Entry<'a> {
 /// A collision cannot be computed, or a file cannot be written.
 pub fn write_page(settings: &Settings, directory: &Path) -> Result<PathBuf, Failure> {
     let bar = Bar::steps();
-    let study = contact_laws::run(settings, &|progress| bar.report(progress));
+    let computed = contact_laws::run(settings, &|progress| bar.report(progress));
     drop(bar);
-    let study = study?;
-    write_study(&study, directory)?;
+    let computed = computed?;
+    let pictures = pictures::contact_laws::draw(&computed).map_err(ReproductionError::from)?;
+    let section = Section::new(computed.study(), pictures);
+    write_study(&section.study, &section.pictures, directory)?;
     let path = directory.join("laws.html");
-    write(&path, page::laws(study).as_bytes())?;
+    write(&path, page::laws(section).as_bytes())?;
     Ok(path)
 }
 

@@ -1,18 +1,23 @@
 //! `locate`: points, looked up in an atlas.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use stickslip_files::input::atlas::{self, AnyAtlas, RunsAtlas};
+use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::Given;
 use stickslip_files::input::rows::{ByteRecord, Columns, Input, Reading, TwoColumns};
 use stickslip_files::output::csv::{CsvFile, Rows};
-use stickslip_files::output::file::publish;
+use stickslip_files::output::file::STANDARD_OUTPUT;
 use stickslip_files::output::rows::{LOCATED, LOCATED_RUNS};
+use stickslip_model::Contact;
 use stickslip_plane::atlas::switch_count;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Atlas, Itinerary, Location, Point};
+use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point};
 
 use crate::error::Failure;
+use crate::output::console::{counted, deliver, print};
+use crate::output::text::{explained, number, pairs};
+use crate::shared::collision::contact;
 use crate::shared::files::{require_different, require_one_standard_input};
 use crate::shared::threads;
 
@@ -20,56 +25,111 @@ use crate::shared::threads;
 #[derive(Debug, clap::Args)]
 #[command(long_about = ABOUT, after_long_help = EXAMPLES)]
 pub struct LocateArguments {
-    /// Atlas that the command trace has written
-    #[arg(long, value_name = "ATLAS.json", help_heading = "Input")]
-    pub atlas: PathBuf,
+    /// Atlas that the command trace has written; - is standard input
+    #[arg(value_name = "ATLAS.json", required_unless_present = "atlas", help_heading = "Input")]
+    pub file: Option<PathBuf>,
+
+    /// The same atlas, as an option
+    #[arg(long, value_name = "ATLAS.json", help_heading = "Input", conflicts_with = "file")]
+    pub atlas: Option<PathBuf>,
 
     /// CSV file with a header row that names kappa and psi, or the parameters of a system, and one
     /// point per row; - is standard input
     #[arg(long, value_name = "POINTS.csv", help_heading = "Input")]
-    pub batch: PathBuf,
+    #[arg(required_unless_present = "kappa", conflicts_with = "kappa")]
+    pub batch: Option<PathBuf>,
 
-    /// CSV file for the results, one row per point in the order of the input
-    #[arg(long, value_name = "OUT.csv", help_heading = "Output")]
-    pub out: PathBuf,
+    /// κ of one point, whose place is printed, with --psi; above 0
+    #[arg(long, value_name = "K", help_heading = "Input", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text), requires = "psi")]
+    pub kappa: Option<f64>,
+
+    /// ψ of the point; above 0
+    #[arg(long, value_name = "P", help_heading = "Input", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Psi.parse(text), requires = "kappa")]
+    pub psi: Option<f64>,
+
+    /// CSV file for the results, one row per point in the order of the input [default: standard
+    /// output]
+    #[arg(long, value_name = "OUT.csv", help_heading = "Output", conflicts_with = "kappa")]
+    pub out: Option<PathBuf>,
 }
 
-/// Locates every point of the input.
+/// The files of the points and of the results.
+#[derive(Clone, Copy)]
+struct PointFiles<'a> {
+    input: &'a Path,
+    out: &'a Path,
+}
+
+/// Locates every point of the input, or one.
 ///
 /// # Errors
 /// The atlas or the input cannot be used, the output cannot be written, or some points cannot be
 /// located. In the last case the output is complete.
 pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
-    let atlas = ("--atlas", Some(&*arguments.atlas));
-    let batch = ("--batch", Some(&*arguments.batch));
-    require_one_standard_input(atlas, batch)?;
-    require_different(&[("--out", Some(&arguments.out))], &[batch, atlas])?;
-    let atlas = match atlas::read(&arguments.atlas)? {
-        AnyAtlas::Collisions(atlas) => atlas,
-        AnyAtlas::Runs(atlas) => return runs(arguments, &atlas),
+    let LocateArguments { kappa, psi, out, .. } = arguments;
+    let path = arguments.file.as_deref().or(arguments.atlas.as_deref());
+    let Some(path) = path else {
+        return Err(Failure::Usage("no atlas is given; expected ATLAS.json".to_owned()));
     };
-    let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
-    write(arguments, points, &LOCATED, |contact| {
-        let located = atlas.locate(contact);
+    let name = if arguments.atlas.is_some() { "--atlas" } else { "ATLAS.json" };
+    let (named, batch) = ((name, Some(path)), ("--batch", arguments.batch.as_deref()));
+    require_one_standard_input(named, batch)?;
+    require_different(&[("--out", out.as_deref())], &[batch, named])?;
+    let out = out.as_deref().unwrap_or(Path::new(STANDARD_OUTPUT));
+    let files = batch.1.map(|input| PointFiles { input, out });
+    let atlas = match (atlas::read(path)?, files) {
+        (AnyAtlas::Collisions(atlas), _) => atlas,
+        (AnyAtlas::Runs(atlas), Some(files)) => return runs(files, &atlas),
+        (AnyAtlas::Runs(atlas), None) => {
+            let [x, y] = &atlas.names.axes;
+            let expected = format!("expected --batch, a file with the columns {x} and {y}");
+            let message =
+                format!("--kappa is not in the atlas of a system of your own; {expected}");
+            return Err(Failure::Usage(message));
+        }
+    };
+    let located = |contact: &Contact| {
+        let located = atlas.locate([contact.kappa(), contact.psi()]);
         let region = located.region.map_err(|why| why.to_string()).map(|region| {
             let itinerary = atlas.itinerary(region);
             [switch_count(itinerary).to_string(), itinerary.to_owned(), region.to_string()]
         });
         (region, located.distance)
+    };
+    if let Some(files) = files {
+        let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
+        return write(files, points, &LOCATED, located);
+    }
+    let (region, distance) =
+        located(&contact(&Given { kappa: *kappa, psi: *psi, ..Given::default() })?);
+    let [switches, itinerary, region] = region.map_err(Failure::NotLocated)?;
+    let distance = distance.map_or_else(|| "no boundary at this κ".to_owned(), number);
+    print(|out| {
+        pairs(
+            out,
+            &[
+                ("switches", switches),
+                ("itinerary", explained(&itinerary)),
+                ("region", region),
+                ("distance to a boundary in ψ", distance),
+            ],
+        )
     })
 }
 
 /// Locates every point of the input in an atlas of a system of one's own.
-fn runs(arguments: &LocateArguments, found: &RunsAtlas) -> Result<(), Failure> {
-    let RunsAtlas { atlas, axes, guards } = found;
-    let points = |header: &_| TwoColumns::named(header, axes, &LOCATED_RUNS);
-    write(arguments, points, &LOCATED_RUNS, |&(x, y)| {
+fn runs(files: PointFiles<'_>, found: &RunsAtlas) -> Result<(), Failure> {
+    let RunsAtlas { atlas, names } = found;
+    let points = |header: &_| TwoColumns::named(header, &names.axes, &LOCATED_RUNS);
+    write(files, points, &LOCATED_RUNS, |&(x, y)| {
         let point = Point::new(x, y);
         let region = region_of(atlas, &point).map(|(region, label)| {
-            let (count, itinerary) = itinerary(label, guards);
-            [count, itinerary, region.to_string()]
+            let count = label.fired().map_or_else(String::new, |fired| fired.len().to_string());
+            [count, names.text(label), region.to_string()]
         });
-        let named = |why| format!("{} = {x}, {} = {y} {why}", axes[0], axes[1]);
+        let named = |why| format!("{} = {x}, {} = {y} {why}", names.axes[0], names.axes[1]);
         (region.map_err(named), atlas.plane.vertical_distance(&point))
     })
 }
@@ -79,14 +139,14 @@ type Located = (Result<[String; 3], String>, Option<f64>);
 
 /// Writes a row with the columns `names` for every point of the input.
 fn write<R: Reading>(
-    arguments: &LocateArguments,
+    PointFiles { input, out }: PointFiles<'_>,
     points: impl FnOnce(&ByteRecord) -> Result<R, String>,
     names: &[&str; 4],
     locate: impl Fn(&R::Case) -> Located,
 ) -> Result<(), Failure> {
-    let mut input = Input::open(&arguments.batch, points)?;
+    let mut input = Input::open(input, points)?;
     let pool = threads::pool(Some(1))?;
-    let mut table = CsvFile::create(&arguments.out)?;
+    let mut table = CsvFile::create(out)?;
     let mut text = Rows::default();
     text.fields(input.header().iter().chain(names.iter().map(|name| name.as_bytes())));
     text.end();
@@ -123,9 +183,10 @@ fn write<R: Reading>(
             text.end();
         }
     }
-    publish([table.store()?])?;
+    let found = counted(usize::try_from(rows - failed).unwrap_or(usize::MAX), "point", "points");
+    deliver([table.store()?], format_args!("{found} located"))?;
     match first {
-        Some(first) => Err(Failure::Unlocated { failed, rows, path: arguments.out.clone(), first }),
+        Some(first) => Err(Failure::Unlocated { failed, rows, path: out.to_owned(), first }),
         None => Ok(()),
     }
 }
@@ -146,23 +207,6 @@ fn region_of<'a>(
     }
 }
 
-/// The number of events and their names.
-fn itinerary(label: &Itinerary, guards: &[String]) -> (String, String) {
-    let Some(fired) = label.fired() else {
-        let word = match label {
-            Itinerary::Accumulates => "accumulates",
-            Itinerary::Fails => "fails",
-            _ => "unfinished",
-        };
-        return (String::new(), word.to_owned());
-    };
-    let name = |&guard: &usize| guards.get(guard).map_or("", String::as_str);
-    let names: Vec<&str> = fired.iter().map(name).collect();
-    let goes_on = matches!(label, Itinerary::Begins(_));
-    let more = if goes_on { "; …" } else { "" };
-    (fired.len().to_string(), format!("{}{more}", names.join("; ")))
-}
-
 /// What `locate --help` says first.
 const ABOUT: &str = "\
 Look up the switches of collisions in an atlas.
@@ -181,6 +225,7 @@ point is not located.";
 /// What `locate --help` says last.
 const EXAMPLES: &str = "\
 Examples:
-  stickslip locate --atlas atlas.json --batch POINTS.csv --out OUT.csv
+  stickslip locate atlas.json --kappa 18 --psi 0.5
+  stickslip locate atlas.json --batch POINTS.csv --out OUT.csv
 
 Exit codes: 0 done, 1 a point cannot be located, 2 bad usage or bad input.";

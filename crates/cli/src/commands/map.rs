@@ -18,7 +18,7 @@ use crate::shared::law::LawArguments;
 use crate::shared::method::MethodArguments;
 use crate::shared::system::{PlaneArguments, SystemPlane};
 use crate::shared::threads::ThreadsArguments;
-pub use collisions::{finish, require_all};
+pub use collisions::{computed, finish, require_all};
 
 /// Compute the restitution and the number of switches on a plane
 #[derive(Debug, clap::Args)]
@@ -75,14 +75,14 @@ pub struct MapArguments {
     #[command(flatten)]
     pub method: MethodArguments,
 
-    /// File for the map: NumPy arrays in FILE.npz, or a table in FILE.csv
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub out: PathBuf,
+    /// File for the map: NumPy arrays in FILE.npz, or a table in FILE.csv; --plot is enough
+    #[arg(long, value_name = "FILE", help_heading = "Output", required_unless_present = "plot")]
+    pub out: Option<PathBuf>,
 
     /// Compute only part K of N of the map, 1 <= K <= N <= 1000000; FILE is then for the command
     /// join, and may have any name
     #[arg(long, value_name = "K/N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = MapPart::parse, conflicts_with_all = ["plot", "system"])]
+    #[arg(value_parser = MapPart::parse, conflicts_with_all = ["plot", "system"], requires = "out")]
     pub part: Option<MapPart>,
 
     /// Picture of ε_t in colours, and of the regions with equal numbers of switches
@@ -116,6 +116,23 @@ impl MapFormat {
                 "--out {}: the name does not tell the format; expected FILE.npz or FILE.csv",
                 out.display()
             ))),
+        }
+    }
+}
+
+/// How points without a result are shown.
+pub const IN_ARRAYS: &str = "NaN and -1";
+const IN_PICTURES: &str = "grey";
+
+impl MapArguments {
+    /// The file of the map, or of its picture if there is no other, and how points without a
+    /// result are shown in it.
+    fn main_file(&self) -> Result<(&Path, &'static str), Failure> {
+        match (&self.out, &self.plot) {
+            (Some(out), _) => Ok((out, IN_ARRAYS)),
+            (None, Some(plot)) => Ok((plot.path(), IN_PICTURES)),
+            // The parser of the options asks for one.
+            (None, None) => Err(Failure::Usage("--out is missing; expected it or --plot".into())),
         }
     }
 }
@@ -166,7 +183,7 @@ Results:
 Examples:
   stickslip map --kappa 0:70 --psi 0:2.9 --size 1000x1000 --out map.npz --plot map.svg
   stickslip map --kappa 0:20 --ratio 0:3.5 --mu 0.4 --alpha 2/7 --size 600x400 --out map.csv
-  stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
+  stickslip map --kappa 17:19 --psi 0:2 --size 500x500 --plot map.png
   stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz
   stickslip map --bodies pair.json --normal 0:200 --tangential 0:200 --size 500x500 --out si.npz
   stickslip map examples/systems/belt.slip --x belt=0.1:1.5 --y kinetic=0.2:0.9 --size 300x300 \\

@@ -132,7 +132,7 @@ fn write_section(section: &Section, directory: &Path) -> Result<(), Failure> {
         };
         write(&path, &bytes.map_err(|error| Failure::output(&path, error))?)?;
     }
-    Ok(write_study(&section.study, directory)?)
+    Ok(write_study(&section.study, &section.pictures, directory)?)
 }
 
 /// What `reproduce --help` says first.

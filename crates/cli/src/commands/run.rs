@@ -10,14 +10,13 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use stickslip_expression::{Recording, System, outcome_name};
 use stickslip_files::output::csv::CsvFile;
-use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_solver::dynamic::DynamicSwitch;
 use stickslip_solver::{EmbeddedPair, Options, Outcome, Rest};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::output::text::{self, number};
 use crate::schema;
 use crate::shared::Format;
@@ -64,6 +63,10 @@ pub struct RunArguments {
     /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     pub format: Format,
+
+    /// Add the work of the integrator to the table
+    #[arg(long, help_heading = "Output")]
+    pub verbose: bool,
 
     /// CSV file for the events, with the states before and after them
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
@@ -113,10 +116,13 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let follow = |path| files::write_course(path, arguments.points, system, &found);
     let course = course.map(follow).transpose()?;
     let picture = plot.map(|plot| plot.write(Ok(files::draw(&run, &found)))).transpose()?;
-    publish(events.into_iter().chain(course).chain(picture))?;
+    deliver(events.into_iter().chain(course).chain(picture), "")?;
     print(|out| match arguments.format {
         Format::Json => json::lines(out, &document(&run, &found)),
-        Format::Table => table(out, &run, &found),
+        Format::Table => {
+            table(out, &run, &found)?;
+            if arguments.verbose { text::work(out, &found.run.statistics) } else { Ok(()) }
+        }
     })
 }
 
@@ -240,8 +246,7 @@ fn table(out: &mut dyn Write, run: &SystemRun, found: &Recording) -> io::Result<
         lines.push(("accumulations passed", found.rests.len().to_string()));
     }
     lines.push(("guards", if found.run.decided { "decided" } else { "sampled" }.to_owned()));
-    text::pairs(out, &lines)?;
-    text::work(out, &found.run.statistics)
+    text::pairs(out, &lines)
 }
 
 /// What `run --help` says first.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::{number, range};
-use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
@@ -16,6 +16,7 @@ use stickslip_plane::stack::{DampingStackError, StackDocument, damped, stack};
 use stickslip_tracer::{Stack, StackOptions, Watch};
 
 use crate::error::Failure;
+use crate::output::console::{counted, deliver};
 use crate::shared::files::{self, plotted, require_different, write_json};
 use crate::shared::system::{PlaneArguments, SystemPlane, place};
 use crate::shared::threads::ThreadsArguments;
@@ -118,8 +119,11 @@ fn collisions(arguments: &StackArguments) -> Result<(), Failure> {
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::stack::draw(&made)))?);
     }
-    publish(stored)?;
-    Failure::if_doubtful(out, made.objection())
+    deliver(stored, found("damping", "dampings", made.layers.len(), made.changes.len()))?;
+    let doubtful = made.changes.iter().find(|change| change.doubtful);
+    let doubtful = doubtful.map(|change| change.between);
+    let objection = made.objection().map(|why| advised(why, "--damping ", damping, doubtful));
+    Failure::if_doubtful(out, "stack is", objection)
 }
 
 /// Atlases of a system of one's own over a third parameter.
@@ -141,17 +145,35 @@ fn runs(plane: &SystemPlane, arguments: &StackArguments) -> Result<(), Failure> 
         let at = error.source().map_or_else(String::new, |source| format!(": {source}"));
         Failure::Family(format!("{error}{at}"))
     })?;
-    let [x, y] = &plane.axes;
-    let axes = [x.as_str(), y, name];
-    let mut document = stickslip_tracer::StackDocument::new(&made, &options, &plane.name, axes);
-    document.guards = plane.family.rules().to_vec();
+    let document = stickslip_tracer::StackDocument::of_runs(&made, &options, &plane.names, name);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
-        let picture = pictures::stack::draw_runs(&made, &plane.name, [x, y], name);
+        let picture = pictures::stack::draw_runs(&made, &plane.names, name);
         stored.push(plot.write(Ok(picture))?);
     }
-    publish(stored)?;
-    Failure::if_doubtful(out, document.objection)
+    deliver(stored, found("value", "values", made.layers.len(), made.changes.len()))?;
+    let doubtful = made.changes.iter().find(|change| change.is_doubtful());
+    let doubtful = doubtful.map(|change| change.between);
+    let option = format!("--over {name}=");
+    let objection = document.objection.map(|why| advised(why, &option, values, doubtful));
+    Failure::if_doubtful(out, "stack is", objection)
+}
+
+/// How many atlases there are, and how many changes between them.
+fn found(one: &str, more: &str, layers: usize, changes: usize) -> String {
+    let changes = counted(changes, "change", "changes");
+    format!("atlases at {}, {changes} between them", counted(layers, one, more))
+}
+
+/// What speaks against a stack, and what to do if it is a change between two values: search again
+/// between atlases that are closer to it, of which other values are tried.
+fn advised(objection: String, option: &str, values: &[f64], change: Option<[f64; 2]>) -> String {
+    let Some([low, high]) = change else { return objection };
+    let below = values.iter().rev().find(|value| **value < low);
+    let above = values.iter().find(|value| **value > high);
+    let (Some(below), Some(above)) = (below, above) else { return objection };
+    let (below, above) = (low - 0.3 * (low - below), high + 0.3 * (above - high));
+    format!("{objection}; a search in {option}{below:.4},{above:.4} may resolve it")
 }
 
 /// The place of the third parameter, and its values.
@@ -164,7 +186,7 @@ fn over_third<'a>(
         return Err(Failure::Usage(message.to_owned()));
     };
     let third = place(&plane.system, "--over", &over.name)?;
-    if plane.axes.contains(&over.name) {
+    if plane.names.axes.contains(&over.name) {
         let name = &over.name;
         let message = format!("--over {name}: expected another parameter than --x and --y");
         return Err(Failure::Usage(message));

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use stickslip_files::input::bodies::read_pair;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::{number, range};
-use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::{json, table_npz};
 use stickslip_model::Law;
 use stickslip_plane::Range;
 use stickslip_practice::tables::{self, Document, Settings, Table, Verification, Window};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::output::text::pairs;
 use crate::shared::files::require_different;
 use crate::shared::study::refused;
@@ -105,7 +105,7 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
         let content = content.map_err(|error| file.failure(error))?;
         file.finish(&content)
     });
-    publish(stored.collect::<Result<Vec<_>, _>>()?)?;
+    deliver(stored.collect::<Result<Vec<_>, _>>()?, "")?;
     print(|out| summary(out, &table))
 }
 

@@ -6,18 +6,18 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
+use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::range::{self, OneOrRange};
 use stickslip_files::input::source::shown;
 use stickslip_files::input::{bodies, law, number};
-use stickslip_files::output::file::publish;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Reduction};
 use stickslip_practice::time_steps::{self, Quantity, Scheme, Seconds, Settings, TimeSteps};
 
 use crate::error::Failure;
-use crate::output::console::print;
+use crate::output::console::{deliver, print};
 use crate::shared::Format;
 use crate::shared::collision::reduction;
 use crate::shared::files;
@@ -132,7 +132,7 @@ pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
     plot.map_or(Ok(()), PictureFile::probe)?;
     let result = arguments.threads.with_steps(|report| time_steps::run(&settings, report))??;
     if let Some(plot) = plot {
-        publish([plot.write(Ok(result.picture()))?])?;
+        deliver([plot.write(Ok(pictures::time_steps::draw(&result)))?], "")?;
     }
     print(|out| match arguments.format {
         Format::Json => json::lines(out, &Document::new(&result, seconds, wanted)),

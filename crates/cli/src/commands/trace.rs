@@ -6,16 +6,17 @@ use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::reduced;
 use stickslip_files::input::{number, range};
-use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Document, Frame, geojson};
+use stickslip_plane::atlas::{self, Atlas, Document, Frame, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{Surveyor, Watch};
 
 use crate::error::Failure;
+use crate::output::console::{counted, deliver};
 use crate::shared::collision::{CollisionArguments, ImpactRange, window};
 use crate::shared::files::{self, plotted, require_different, write_json};
 use crate::shared::law::LawArguments;
@@ -128,14 +129,28 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
         stored.push(write_json(file, &gaining::Document::from(gained))?);
     }
     if let Some(plot) = plot {
-        stored.push(plot.write(Ok(pictures::atlas::draw(&verified.atlas)))?);
+        stored.push(plot.write(Ok(pictures::atlas::draw(&verified)))?);
     }
-    publish(stored)?;
-    Failure::if_doubtful(out, verified.report.objection())?;
+    deliver(stored, found(&verified))?;
+    Failure::if_doubtful(out, "atlas is", verified.objection())?;
     match (lines, gained) {
-        (Some(path), Some(gained)) => Failure::if_doubtful(path, gained.objection()),
+        (Some(path), Some(gained)) => Failure::if_doubtful(path, "lines are", gained.objection()),
         _ => Ok(()),
     }
+}
+
+/// What was found, in a sentence.
+fn found(Atlas { regions, report, .. }: &Atlas) -> String {
+    let all = boundaries_and_regions(regions.curves().len(), regions.regions().len());
+    let points = report.tried;
+    let verified = if report.agrees { "verified" } else { "not all confirmed" };
+    format!("{all}, {verified} at {points} points")
+}
+
+/// How many there are.
+fn boundaries_and_regions(boundaries: usize, regions: usize) -> String {
+    let boundaries = counted(boundaries, "boundary", "boundaries");
+    format!("{boundaries}, {}", counted(regions, "region", "regions"))
 }
 
 /// The window of the options.
@@ -171,15 +186,15 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
         surveyor.atlas(&plane.family, &plane.window)
     })?;
     let atlas = atlas.map_err(|error| Failure::Family(error.to_string()))?;
-    let [x, y] = &plane.axes;
-    let mut document = stickslip_tracer::Document::new(&atlas, &options, &plane.name, [x, y]);
-    document.guards = plane.family.rules().to_vec();
+    let document = stickslip_tracer::Document::of_runs(&atlas, &options, &plane.names);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
-        stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.name, [x, y])))?);
+        stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.names)))?);
     }
-    publish(stored)?;
-    Failure::if_doubtful(out, atlas.objection())
+    let found = boundaries_and_regions(atlas.plane.curves().len(), atlas.plane.regions().len());
+    deliver(stored, found)?;
+    let objection = atlas.doubts(&plane.names).map(|doubts| doubts.objection());
+    Failure::if_doubtful(out, "atlas is", objection)
 }
 
 /// What `trace --help` says first.

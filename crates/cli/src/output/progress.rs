@@ -1,13 +1,26 @@
-//! Progress bars, which are shown on a terminal only.
+//! Progress: a bar on a terminal, and a line a minute where standard error is none.
 
 use std::fmt;
+use std::io::{self, IsTerminal};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::thread;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use stickslip_plane::progress::Progress;
 
-/// A progress bar on standard error. It disappears when it is dropped.
+use super::console::say;
+
+/// How often progress is said where no bar is seen.
+const INTERVAL: Duration = Duration::from_mins(1);
+
+/// Progress on standard error. The bar disappears when it is dropped.
 #[derive(Debug)]
-pub struct Bar(ProgressBar);
+pub struct Bar {
+    bar: ProgressBar,
+    /// Ends the lines when it is dropped; none on a terminal.
+    _lines: Option<Sender<()>>,
+}
 
 impl Bar {
     /// A bar that counts the steps of a computation.
@@ -37,24 +50,27 @@ impl Bar {
         let style =
             ProgressStyle::with_template(template).map(|style| style.with_key("rate", rate));
         let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr());
-        Self(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
+        let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let seen = io::stderr().is_terminal();
+        let lines = (!seen).then(|| lines(bar.clone(), INTERVAL, say));
+        Self { bar, _lines: lines }
     }
 
     /// Shows that `count` more are done.
     pub fn advance(&self, count: usize) {
-        self.0.inc(count as u64);
+        self.bar.inc(count as u64);
     }
 
     /// Shows that the input has been read up to `byte`.
     pub fn reach(&self, byte: u64) {
-        self.0.set_position(byte);
+        self.bar.set_position(byte);
     }
 
     /// Shows what a computation reports.
     pub fn report(&self, progress: Progress) {
         match progress {
             Progress::Begin { steps } => {
-                self.0.set_length(self.0.length().unwrap_or(0) + steps as u64);
+                self.bar.set_length(self.bar.length().unwrap_or(0) + steps as u64);
             }
             Progress::Advance { steps } => self.advance(steps),
         }
@@ -63,6 +79,50 @@ impl Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Gives a line about `bar` to `out` every `interval`, until the sender is dropped.
+fn lines(
+    bar: ProgressBar,
+    interval: Duration,
+    out: impl Fn(String) + Send + 'static,
+) -> Sender<()> {
+    let (sender, ended) = mpsc::channel();
+    thread::spawn(move || {
+        while ended.recv_timeout(interval) == Err(RecvTimeoutError::Timeout) {
+            out(line(&bar));
+        }
+    });
+    sender
+}
+
+/// How far a computation is, and how long it has taken.
+fn line(bar: &ProgressBar) -> String {
+    let minutes = (bar.elapsed().as_secs_f64() / 60.0).round();
+    let part = match bar.length() {
+        Some(length) if length > 0 => {
+            format!("{:.0} %", 100.0 * bar.position() as f64 / length as f64)
+        }
+        _ => format!("{} bytes", bar.position()),
+    };
+    format!("progress: {part} after {minutes} min")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_come_until_the_end() {
+        let (said, heard) = mpsc::channel();
+        let bar = ProgressBar::with_draw_target(Some(8), ProgressDrawTarget::hidden());
+        bar.inc(2);
+        let keep = lines(bar, Duration::from_millis(1), move |line| said.send(line).unwrap());
+        assert_eq!(heard.recv().unwrap(), "progress: 25 % after 0 min");
+        drop(keep);
+        // The thread ends, and with it its side of the channel.
+        assert!(heard.iter().all(|line| line == "progress: 25 % after 0 min"));
     }
 }

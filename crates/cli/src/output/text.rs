@@ -46,7 +46,7 @@ pub fn write(
             ("contact time", number(collision.contact_time)),
             ("switches", collision.switches.len().to_string()),
             ("reversals of the motion", collision.reversals.to_string()),
-            ("itinerary", collision.itinerary()),
+            ("itinerary", explained(&collision.itinerary())),
         ],
     )?;
     if let Some(Estimate { eps_t_error, distance, certain }) = estimate {
@@ -65,6 +65,11 @@ pub fn write(
         work(out, statistics)?;
     }
     Ok(())
+}
+
+/// An itinerary with what its characters mean.
+pub fn explained(itinerary: &str) -> String {
+    format!("{itinerary}  (a character a phase: + and - slip to either side, o stick)")
 }
 
 /// The method of `engine` with its tolerances.

@@ -25,7 +25,7 @@ pub fn json(sections: &[Section]) -> String {
 fn part(section: &Section) -> Value {
     let study = &section.study;
     let objections: Vec<String> = section.objections.iter().map(ToString::to_string).collect();
-    let pictures = study.pictures.iter().map(
+    let pictures = section.pictures.iter().map(
         |picture| json!({ "file": format!("{}.svg", picture.name), "caption": picture.caption }),
     );
     let data = section.data();
@@ -56,8 +56,8 @@ pub fn markdown(sections: &[Section]) -> String {
         for finding in &study.findings {
             append(&mut text, format_args!("- {finding}\n"));
         }
-        for picture in &study.pictures {
-            let (name, caption) = (picture.name, &picture.caption);
+        for picture in &section.pictures {
+            let (name, caption) = (&picture.name, &picture.caption);
             append(&mut text, format_args!("\n![{name}]({name}.svg)\n\n{caption}\n"));
         }
         for table in study.tables.iter().filter(|table| section.shown.contains(&table.name)) {

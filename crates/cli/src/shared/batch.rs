@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use stickslip_files::input::rows::{Input, Reading, Row};
 use stickslip_files::output::csv::{CsvFile, Rows};
-use stickslip_files::output::file::{StoredFile, publish};
+use stickslip_files::output::file::{STANDARD_OUTPUT, StoredFile};
 
 use super::files::{Named, require_different};
 use super::threads;
 use crate::error::Failure;
+use crate::output::console::{counted, deliver};
 use crate::output::progress::Bar;
 use piece::piece;
 
@@ -28,10 +29,11 @@ const STATUS: &str = "status";
 #[derive(Clone, Debug, clap::Args)]
 pub struct BatchArguments {
     /// CSV file with a header row and one case per row; - is standard input
-    #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]
+    #[arg(long, value_name = "IN.csv", help_heading = "Batch")]
     pub batch: Option<PathBuf>,
 
-    /// CSV file for the results, one row per case in the order of the input
+    /// CSV file for the results, one row per case in the order of the input [default: standard
+    /// output]
     #[arg(long, value_name = "OUT.csv", help_heading = "Batch", requires = "batch")]
     pub out: Option<PathBuf>,
 
@@ -39,7 +41,8 @@ pub struct BatchArguments {
     #[arg(long, value_name = "EV.csv", help_heading = "Batch", requires = "batch")]
     pub events: Option<PathBuf>,
 
-    /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
+    /// Threads; 1 to 1024 [default: RAYON_NUM_THREADS, or one for each core]; results do not depend
+    /// on it
     #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
     #[arg(value_parser = threads::threads())]
     pub threads: Option<u16>,
@@ -59,9 +62,19 @@ impl BatchArguments {
     /// The files that the options name, beside other inputs; `None` without a batch.
     ///
     /// # Errors
-    /// [`Failure::Usage`]: an output is an input, or the other output.
+    /// [`Failure::Usage`]: an output is an input, or the other output, or there is no batch for it.
     pub fn files(&self, inputs: &[Named]) -> Result<Option<BatchFiles<'_>>, Failure> {
-        let (Some(input), Some(out)) = (&self.batch, &self.out) else { return Ok(None) };
+        let Some(input) = &self.batch else {
+            // Beside an argument that excludes --batch, the parser does not ask for it.
+            let given = [("--out", self.out.is_some()), ("--events", self.events.is_some())];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((option, _)) => Err(Failure::Usage(format!(
+                    "{option} has no effect without --batch; expected both"
+                ))),
+                None => Ok(None),
+            };
+        };
+        let out = self.out.as_deref().unwrap_or(Path::new(STANDARD_OUTPUT));
         let inputs = [&[("--batch", Some(&**input))], inputs].concat();
         let events = self.events.as_deref();
         require_different(&[("--out", Some(out)), ("--events", events)], &inputs)?;
@@ -96,7 +109,7 @@ pub trait Work: Sync {
     ) -> Result<bool, String>;
 }
 
-/// Computes every row of the input.
+/// Computes every row of the input; `by` is what computes them, after a blank, or nothing.
 ///
 /// # Errors
 /// The input cannot be read, an output cannot be written, or some rows have no result. In the last
@@ -105,6 +118,7 @@ pub fn run<R: Reading>(
     files: BatchFiles<'_>,
     mut input: Input<R>,
     work: &impl Work<Case = R::Case>,
+    by: &str,
 ) -> Result<(), Failure> {
     let pool = threads::pool(files.threads)?;
     let mut output = Output::create(files)?;
@@ -147,7 +161,8 @@ pub fn run<R: Reading>(
     output.write(&ready)?;
     drop(bar);
 
-    publish(pool.install(|| output.store())?)?;
+    let found = counted(usize::try_from(count - failed).unwrap_or(usize::MAX), "row", "rows");
+    deliver(pool.install(|| output.store())?, format_args!("{found} computed{by}"))?;
     if failed > 0 {
         return Err(Failure::Rows { failed, rows: count, path: files.out.to_owned() });
     }

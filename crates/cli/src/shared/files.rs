@@ -9,7 +9,7 @@ use serde::Serialize;
 use stickslip_files::input::source::is_standard_input;
 use stickslip_files::output::file::{OutputFile, StoredFile, target};
 use stickslip_files::output::json;
-use stickslip_files::output::picture::PictureFile;
+use stickslip_files::output::picture::{AnimationFile, PictureFile};
 
 use crate::error::Failure;
 
@@ -55,6 +55,11 @@ pub fn require_one_standard_input(one: Named<'_>, other: Named<'_>) -> Result<()
 /// Reads the file of a picture, whose name tells its format.
 pub fn picture() -> impl TypedValueParser<Value = PictureFile> {
     PathBufValueParser::new().try_map(PictureFile::new)
+}
+
+/// Reads the file of an animation.
+pub fn animation() -> impl TypedValueParser<Value = AnimationFile> {
+    PathBufValueParser::new().try_map(AnimationFile::new)
 }
 
 /// The file of a picture as an output.

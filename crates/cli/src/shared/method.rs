@@ -10,7 +10,7 @@ use crate::error::Failure;
 /// What computes a collision, and with which tolerances.
 #[derive(Clone, Debug, clap::Args)]
 pub struct MethodArguments {
-    /// What computes a collision [default: auto for maps, dop853 otherwise]
+    /// What computes a collision [default: auto]
     #[arg(long, value_enum, help_heading = "Method")]
     pub method: Option<Method>,
 
@@ -36,19 +36,18 @@ pub enum Method {
     Dop853,
     /// The exact solution; damping 0, or 1e-60 to 1e4
     Exact,
-    /// The exact solution, or dop853 if a tolerance is given
+    /// The exact solution; dop853 for other laws than the paper's, or if a tolerance is given
     Auto,
 }
 
 impl MethodArguments {
-    /// The engine that the options choose for collisions with a law and a tangential damping;
-    /// `usual` is the method if none is given.
+    /// The engine that the options choose for collisions with a law and a tangential damping.
     ///
     /// # Errors
     /// [`Failure::Usage`]: a tolerance would have no effect.
-    pub fn engine(&self, usual: Method, law: (Law, f64)) -> Result<Engine, Failure> {
+    pub fn engine(&self, law: (Law, f64)) -> Result<Engine, Failure> {
         let Self { method, rtol, atol } = *self;
-        let method = method.unwrap_or(usual).to_possible_value();
+        let method = method.unwrap_or(Method::Auto).to_possible_value();
         let name = method.as_ref().map_or("", |value| value.get_name());
         Engine::chosen_for(law, name, rtol, atol).map_err(|invalid| {
             Failure::Usage(match invalid {

@@ -6,7 +6,7 @@ use stickslip_expression::{Runnable, System, SystemFamily};
 use stickslip_files::input::{number, source};
 use stickslip_plane::Range;
 use stickslip_solver::Options;
-use stickslip_tracer::{AtlasOptions, Point, Window};
+use stickslip_tracer::{AtlasOptions, Point, RunNames, Window};
 
 use super::method::{atol, rtol};
 use crate::error::Failure;
@@ -175,14 +175,12 @@ impl SystemRun {
 /// The runs of a system over a window of two of its parameters.
 #[derive(Debug)]
 pub struct SystemPlane {
-    /// The name of the system in titles.
-    pub name: String,
     /// The system.
     pub system: System,
     /// The runs.
     pub family: SystemFamily,
-    /// The names of the parameters on the axes.
-    pub axes: [String; 2],
+    /// The names of the system in titles, of the parameters on the axes and of the rules.
+    pub names: RunNames,
     /// The window.
     pub window: Window,
 }
@@ -216,9 +214,12 @@ impl SystemPlane {
         let family = SystemFamily::new(&system, places, &parameters, *end, options);
         let family = family.map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(Some(Self {
-            name: title(path),
+            names: RunNames {
+                family: title(path),
+                axes: [x.name.clone(), y.name.clone()],
+                guards: family.rules().to_vec(),
+            },
             family,
-            axes: [x.name.clone(), y.name.clone()],
             window: Window {
                 low: Point::new(x.range.low, y.range.low),
                 high: Point::new(x.range.high, y.range.high),

@@ -185,6 +185,8 @@ fn a_window_without_a_boundary_is_one_region() {
     let line = "trace --kappa 5:6 --ratio 2.9:3.5 --mu 0.4 --alpha 2/7 --out a.json --plot a.png";
     let ran = workspace.run(line);
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let found = "0 boundaries, 1 region, verified at 20001 points; wrote a.json, a.png\n";
+    assert_eq!(ran.said, found);
     let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
     let psi = [2.9, 3.5].map(|ratio| ratio * (2.0 / 7.0) / 0.4);
     assert_eq!(pair(&atlas["window"]["psi"]), psi);
@@ -198,6 +200,9 @@ fn a_window_without_a_boundary_is_one_region() {
         workspace.read("o.csv"),
         "kappa,psi,switch_count,itinerary,region,distance\n5.5,2.3,0,+,0,\n"
     );
+    let ran = workspace.run("locate a.json --batch p.csv");
+    assert_eq!((ran.code, ran.stdout), (0, workspace.read("o.csv")));
+    assert_eq!(ran.said, "1 point located; wrote standard output\n");
 }
 
 fn of_kind<'a>(atlas: &'a Value, kind: &str) -> Vec<&'a Value> {
@@ -486,4 +491,33 @@ fn bad_points_are_refused() {
     workspace.write("p.csv", "kappa,psi,ratio,damping\n6,0.5,x,y\n");
     assert_eq!(workspace.run("locate --atlas a.json --batch p.csv --out o.csv").code, 0);
     assert!(workspace.read("o.csv").contains("6,0.5,x,y,4,"));
+}
+
+#[test]
+fn one_point_is_located_without_files() {
+    let workspace = Workspace::new();
+    workspace.write("a.json", &atlas().0);
+    let ran = workspace.run("locate a.json --kappa 6 --psi 0.5");
+    assert_eq!((ran.code, ran.stderr.as_str(), ran.said.as_str()), (0, "", ""));
+    let line = |start: &str| {
+        let found = ran.stdout.lines().find_map(|line| line.strip_prefix(start));
+        found.unwrap_or_else(|| panic!("{start}: {}", ran.stdout)).trim()
+    };
+    let computed = workspace.run("collide --kappa 6 --psi 0.5 --format json").stdout;
+    let computed: Value = serde_json::from_str(&computed).unwrap();
+    assert_eq!(line("switches "), computed["switch_count"].to_string());
+    assert_eq!(line("itinerary ").split(' ').next(), computed["itinerary"].as_str());
+    assert!(line("distance to a boundary in ψ ").parse::<f64>().unwrap() > 0.0);
+    assert!(line("region ").parse::<usize>().is_ok());
+    for (line, code, expected) in [
+        ("locate a.json --kappa 4 --psi 0.5", 1, "outside the window"),
+        ("locate a.json --kappa 6", 2, "--psi"),
+        ("locate a.json", 2, "--batch"),
+        ("locate --kappa 6 --psi 1", 2, "ATLAS.json"),
+        ("locate a.json --kappa 6 --psi 0.5 --out o.csv", 2, "--out"),
+    ] {
+        let ran = workspace.run(line);
+        assert_eq!((ran.code, ran.stdout.as_str()), (code, ""), "{line}");
+        assert!(ran.stderr.contains(expected), "{line}: {}", ran.stderr);
+    }
 }

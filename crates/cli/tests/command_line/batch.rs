@@ -27,8 +27,11 @@ fn plane(count: u32) -> String {
 #[test]
 fn numbers_read_back_as_the_library_computes() {
     let workspace = Workspace::with_input("psi,kappa,damping\n2/7,63,0\n1.5,1.8e1,0.05\n");
-    let ran = workspace.run("collide --batch in.csv --out out.csv --events ev.csv");
+    let line = "collide --batch in.csv --out out.csv --events ev.csv --method dop853";
+    let ran = workspace.run(line);
     assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.as_str()), (0, "", ""));
+    let by = "by dop853 (rtol 4e-13, atol 4e-13)";
+    assert_eq!(ran.said, format!("2 rows computed {by}; wrote out.csv, ev.csv\n"));
     let table = rows(&workspace.read("out.csv"));
     assert_eq!(table[0].join(","), format!("psi,kappa,damping,{HEADER}"));
     let events = rows(&workspace.read("ev.csv"));
@@ -182,6 +185,7 @@ fn a_header_without_rows() {
     let workspace = Workspace::with_input("kappa,psi\n");
     let ran = workspace.run("collide --batch in.csv --out out.csv --events ev.csv");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    assert!(ran.said.starts_with("0 rows computed"), "{}", ran.said);
     assert_eq!(workspace.read("out.csv"), format!("kappa,psi,{HEADER}\n"));
     assert_eq!(rows(&workspace.read("ev.csv")).len(), 1);
 }
@@ -237,4 +241,20 @@ fn estimates_follow_the_results() {
     let ran = workspace.run("collide --batch in.csv --out o --estimate");
     assert_eq!(ran.code, 2);
     assert!(ran.stderr.contains("column distance has the name of a result"), "{}", ran.stderr);
+}
+
+#[test]
+fn results_go_to_standard_output_unless_a_file_is_named() {
+    let workspace = Workspace::with_input("kappa,psi\n18,1\n");
+    assert_eq!(workspace.run("collide --batch in.csv --out out.csv").code, 0);
+    let table = workspace.read("out.csv");
+    for line in ["collide --batch in.csv", "collide --batch in.csv --out -"] {
+        let ran = workspace.run(line);
+        assert_eq!((ran.code, ran.stdout.as_str()), (0, table.as_str()), "{}", ran.stderr);
+        assert_eq!(ran.said, "1 row computed by the exact solution; wrote standard output\n");
+    }
+    assert_eq!(workspace.names(), ["in.csv", "out.csv"]);
+    let ran = workspace.run("collide --batch in.csv --events /dev/stdout");
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("same file"), "{}", ran.stderr);
 }

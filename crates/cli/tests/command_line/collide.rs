@@ -68,7 +68,7 @@ fn assert_same(object: &Value, collision: &Collision) {
 
 #[test]
 fn json_has_the_documented_keys_in_order() {
-    let object = json("--kappa 63 --psi 0.5");
+    let object = json("--kappa 63 --psi 0.5 --method dop853");
     assert_eq!(
         keys(&object),
         [
@@ -124,7 +124,7 @@ fn json_has_the_documented_keys_in_order() {
     );
     assert_eq!(object["statistics"]["switches"], object["switch_count"]);
 
-    let object = json("--kappa 63 --psi 0.5 --method exact");
+    let object = json("--kappa 63 --psi 0.5");
     assert_eq!(object["method"], serde_json::json!({"name": "exact"}));
     assert_eq!(object["statistics"], serde_json::json!({}));
 }
@@ -133,8 +133,8 @@ fn json_has_the_documented_keys_in_order() {
 fn json_reads_back_as_the_library_computes() {
     let contact = Contact::new(63.0, 0.5, 0.0).unwrap();
     let collision = Collider::new(Dop853).collide(contact).unwrap();
-    assert_same(&json("--kappa 63 --psi 0.5"), &collision);
-    assert_same(&json("--kappa 63 --psi 0.5 --method exact"), &exact::collide(contact).unwrap());
+    assert_same(&json("--kappa 63 --psi 0.5 --method dop853"), &collision);
+    assert_same(&json("--kappa 63 --psi 0.5"), &exact::collide(contact).unwrap());
 
     let contact = Contact::new(18.0, 2.0 / 7.0, 0.05).unwrap();
     let collision = Collider::with_tolerances(Dopri5, 1e-9, 1e-11).collide(contact).unwrap();
@@ -173,14 +173,15 @@ fn methods_agree_with_the_reference_values() {
 
 #[test]
 fn the_table_shows_switches_results_energy_and_work() {
-    let Ran { code, stdout, stderr } = stickslip("collide --kappa 63 --psi 0.5");
+    let Ran { code, stdout, stderr, .. } =
+        stickslip("collide --kappa 63 --psi 0.5 --method dop853 --verbose");
     assert_eq!((code, stderr.as_str()), (0, ""));
     let line = |start: &str| {
         stdout.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{start}"))
     };
     assert!(line("Collision").contains("κ = 63.0, ψ = 0.5, damping a = 0.0, by dop853"));
     assert!(line("tangential restitution ε_t").ends_with("-0.04165220748"));
-    assert!(line("itinerary").ends_with(" +o-o+o-"));
+    assert!(line("itinerary").contains(" +o-o+o-  (a character a phase"));
     assert!(line("reversals").ends_with(" 5"));
     assert!(line("unbalanced").contains("e-1"), "the ledger balances to rounding");
     assert!(line("evaluations of the right-hand side").ends_with(|c: char| c.is_ascii_digit()));
@@ -189,8 +190,10 @@ fn the_table_shows_switches_results_energy_and_work() {
     assert_eq!(switches.len(), 7);
     assert!(switches.iter().all(|row| row.chars().count() == switches[0].chars().count()));
 
-    let exact = stickslip("collide --kappa 63 --psi 2.5 --method exact").stdout;
-    assert!(exact.contains("No switch.") && !exact.contains("evaluations"), "{exact}");
+    for line in ["--kappa 63 --psi 2.5", "--kappa 63 --psi 2.5 --method dop853"] {
+        let quiet = stickslip(&format!("collide {line}")).stdout;
+        assert!(quiet.contains("No switch.") && !quiet.contains("evaluations"), "{quiet}");
+    }
 }
 
 #[test]
@@ -254,4 +257,21 @@ fn estimates_are_those_of_the_library() {
     let table = stickslip(&format!("collide {line}")).stdout;
     assert!(table.contains("distance from other switches  5.0e-3"), "{table}");
     assert!(json("--kappa 18 --psi 1.99").get("estimate").is_none());
+}
+
+#[test]
+fn the_best_engine_answers_unless_another_one_is_asked_for() {
+    // The integrators begin at a damping of 1e-8.
+    let line = "--kappa 18 --psi 1 --damping 1e-9";
+    let object = json(line);
+    assert_eq!(object["method"]["name"], "exact");
+    let contact = Contact::new(18.0, 1.0, 1e-9).unwrap();
+    assert_same(&object, &exact::collide(contact).unwrap());
+    let ran = stickslip(&format!("collide {line} --method dop853"));
+    assert_eq!(ran.code, 1);
+    assert!(ran.stderr.contains("out of the range of the integrator"), "{}", ran.stderr);
+    for (more, name) in [("--rtol 1e-9", "dop853"), ("--law gran/hertz/history", "dop853")] {
+        let object = json(&format!("--kappa 18 --psi 1 --damping 0.1 {more}"));
+        assert_eq!(object["method"]["name"], name, "{more}");
+    }
 }

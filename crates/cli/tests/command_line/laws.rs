@@ -107,10 +107,13 @@ fn what_is_no_law_is_refused() {
     let directory = Workspace::new();
     directory.write("law.json", r#"{"normal": "hooke"}"#);
     directory.write("extra.json", r#"{"stiffness": 3}"#);
+    let list = r#" ["hertz", "none", "constant", "force", false, false, "force"]"#;
+    directory.write("list.json", list);
     for (law, expected, code) in [
         ("nowhere", "is neither a file nor a name", 2),
         ("law.json", "normal: unknown variant `hooke`, expected `linear` or `hertz`", 2),
         ("extra.json", "unknown field `stiffness`", 2),
+        ("list.json", "is a list; expected an object with named fields", 2),
         ("granular/hertz/tsuji/mindlin --damping 2.3", "never end", 2),
         ("yade/FrictPhys_CundallStrack --damping 0.1", "this law has no damping", 2),
         ("mfix/LSD --damping 0.1 --tangential-damping 1", "has no meaning in the law mfix/LSD", 2),

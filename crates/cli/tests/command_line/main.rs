@@ -67,16 +67,23 @@ fn heeded(signal: u32) -> u32 {
 struct Ran {
     code: i32,
     stdout: String,
+    /// Standard error without what was `said`.
     stderr: String,
+    /// The line on standard error about what was found and written; empty if nothing was.
+    said: String,
 }
 
 impl From<Output> for Ran {
     fn from(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
+        let all = text(output.stderr);
+        let is_said = |line: &&str| line.starts_with("wrote ") || line.contains("; wrote ");
+        let lines = || all.split_inclusive('\n');
         Self {
             code: output.status.code().expect("the program is not killed"),
             stdout: text(output.stdout),
-            stderr: text(output.stderr),
+            stderr: lines().filter(|line| !is_said(line)).collect(),
+            said: lines().filter(is_said).collect(),
         }
     }
 }

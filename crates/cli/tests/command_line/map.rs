@@ -220,3 +220,41 @@ fn a_map_of_two_bodies_in_the_plane_of_their_velocities() {
         assert_eq!(row[6], collision.switches.len().to_string());
     }
 }
+
+#[test]
+fn a_picture_alone_is_enough() {
+    let workspace = Workspace::new();
+    let line = "map --kappa 0:20 --psi 0:2 --size 9x7";
+    let ran = workspace.run(&format!("{line} --out m.csv --plot both.svg"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(ran.said, "63 points computed by the exact solution; wrote m.csv, both.svg\n");
+    let ran = workspace.run(&format!("{line} --plot alone.svg"));
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    assert_eq!(ran.said, "63 points computed by the exact solution; wrote alone.svg\n");
+    assert!(workspace.read("alone.svg") == workspace.read("both.svg"));
+    assert_eq!(workspace.names(), ["alone.svg", "both.svg", "m.csv"]);
+    // Below the range of ψ there is no collision.
+    let ran = workspace.run("map --kappa 1:2 --psi 0:1e-120 --size 2x2 --plot none.svg");
+    assert_eq!(ran.code, 1);
+    assert!(ran.stderr.contains("4 of 4 points could not be computed and are grey in none.svg"));
+    let ran = workspace.run(line);
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("--out"), "{}", ran.stderr);
+    let ran = workspace.run(&format!("{line} --part 1/2 --plot m.svg"));
+    assert_eq!(ran.code, 2);
+}
+
+#[test]
+fn the_environment_does_not_name_too_many_threads() {
+    for (threads, code) in [("1", 0), ("", 0), ("0", 2), ("1025", 2), ("many", 2)] {
+        let workspace = Workspace::new();
+        let out = workspace.path("m.csv");
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("stickslip"));
+        command.args("map --kappa 0:20 --psi 0:2 --size 2x2 --out".split(' ')).arg(out);
+        let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
+        assert_eq!(output.status.code(), Some(code), "{threads}");
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        let expected = "expected a whole number from 1 to 1024";
+        assert_eq!(stderr.contains(expected), code == 2, "{stderr}");
+    }
+}

@@ -329,3 +329,60 @@ fn a_full_disk_leaves_nothing() {
     assert_eq!(workspace.names(), ["m.csv", "m.svg"]);
     assert!(ran.stderr.contains("going on with 1 of 1 tiles"), "{}", ran.stderr);
 }
+
+#[test]
+fn collisions_are_animated() {
+    let workspace = Workspace::new();
+    let line = "collide --kappa 63 --psi 0.5 --animate";
+    let ran = workspace.run(&format!("{line} a.gif"));
+    assert_eq!((ran.code, ran.stderr.as_str(), ran.said.as_str()), (0, "", "wrote a.gif\n"));
+    assert!(fs::read(workspace.path("a.gif")).unwrap().starts_with(b"GIF89a"));
+    let ran = workspace.run(&format!("{line} a.mp4"));
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("expected a name that ends in .gif"), "{}", ran.stderr);
+    assert_eq!(workspace.run(&format!("{line} a.gif --course a.gif")).code, 2);
+}
+
+/// Too few files may be open for the outputs.
+#[cfg(target_os = "linux")]
+#[test]
+fn too_many_open_files_are_named() {
+    let workspace = Workspace::with_input("kappa,psi\n18,1\n");
+    let mut named = 0;
+    for limit in 4..12 {
+        let script = format!("ulimit -n {limit}; exec \"$0\" collide --batch in.csv --out o");
+        let output = Command::new("sh")
+            .current_dir(workspace.path("."))
+            .args(["-c", &script])
+            .arg(cargo_bin!("stickslip"))
+            .output()
+            .expect("a shell");
+        let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+        assert!(!stderr.contains("uncategorized"), "{stderr}");
+        named += usize::from(stderr.contains("o: cannot be written: Too many open files"));
+    }
+    assert!(named > 0);
+}
+
+#[test]
+fn impacts_are_drawn_in_si_units() {
+    let workspace = Workspace::new();
+    let file = crate::impact::example("steel_pair.json");
+    let line = format!("impact {} --speed 2 --plot a.svg", file.display());
+    let ran = workspace.run(&format!("{line} --angle 0.5"));
+    assert_eq!((ran.code, ran.stderr.as_str(), ran.said.as_str()), (0, "", "wrote a.svg\n"));
+    let svg = workspace.read("a.svg");
+    for name in ["force [N]", "time [s]", "velocity of the surfaces [m/s]"] {
+        assert!(svg.contains(name), "{name}");
+    }
+    let switches = ran.stdout.lines().find(|line| line.starts_with("switches")).unwrap();
+    let count: usize = switches.split_whitespace().last().unwrap().parse().unwrap();
+    let document = Document::parse(&svg).expect("XML");
+    for group in groups(&document, "switches") {
+        let lines = group.children().filter(|node| node.has_tag_name("line"));
+        assert_eq!(lines.count(), count);
+    }
+    let ran = workspace.run(&format!("{line} --angle 0"));
+    assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
+    assert!(ran.stderr.contains("nothing is tangential in a central impact"), "{}", ran.stderr);
+}

@@ -56,6 +56,9 @@ fn the_atlas_of_a_ball_is_that_of_its_closed_form() {
         assert_eq!(located[row][4], format!("{}{more}", vec!["bounce"; count].join("; ")));
     }
     assert_eq!(located[3][3..], ["", "", "", ""]);
+    let ran = directory.run("locate atlas.json --kappa 1 --psi 1");
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("--batch, a file with the columns e and height"), "{}", ran.stderr);
     directory.write("others.csv", "height,f\n1,2\n");
     let ran = directory.run("locate --atlas atlas.json --batch others.csv --out located.csv");
     assert!(ran.stderr.contains("e is missing; expected columns e and height"), "{}", ran.stderr);

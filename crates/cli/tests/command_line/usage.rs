@@ -80,8 +80,8 @@ fn a_psi_that_overflows() {
 }
 
 #[test]
-fn a_batch_without_a_file_for_results() {
-    refused("--batch x.csv", &["--out"]);
+fn a_file_for_results_without_a_batch() {
+    refused("--kappa 18 --psi 1 --out x.csv", &["--batch"]);
 }
 
 #[test]

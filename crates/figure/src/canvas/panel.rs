@@ -1,6 +1,7 @@
 //! A frame with two axes, and what is drawn against them.
 
-use super::number::minus;
+use stickslip_model::text::minus;
+
 use super::shape::{Rectangle, Stroke};
 use super::style::{FRAME, SMALL, TEXT};
 use super::svg::{Anchor, Svg, Words};

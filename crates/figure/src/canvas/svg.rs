@@ -210,6 +210,23 @@ impl Svg {
         self.element(format_args!(r#"<polygon points="{list}" fill="{colour}"/>"#));
     }
 
+    /// Adds an area that is not visible, inside closed lines; lines in others are holes. Browsers
+    /// show its title where the pointer is over it.
+    pub fn hint(&mut self, lines: &[Vec<(f64, f64)>], title: &str) {
+        let mut path = String::new();
+        for line in lines {
+            for (index, (x, y)) in line.iter().filter(|point| is_finite(**point)).enumerate() {
+                let to = if index == 0 { 'M' } else { 'L' };
+                markup::append(&mut path, format_args!("{to}{},{}", Px(*x), Px(*y)));
+            }
+            path.push('Z');
+        }
+        let title = markup::escaped(title);
+        self.element(format_args!(
+            r#"<path d="{path}" fill="none" fill-rule="evenodd" pointer-events="all"><title>{title}</title></path>"#
+        ));
+    }
+
     /// Adds an image, each pixel of which becomes a sharp rectangle. `png` is its file in base 64.
     pub fn image(&mut self, at: Rectangle, png: &str) {
         if !at.is_finite() {

@@ -1,6 +1,6 @@
 //! Ticks of axes: round values with their labels.
 
-use super::number::{minus, number};
+use stickslip_model::text::{minus, number};
 
 /// A round value on an axis.
 #[derive(Clone, Debug, PartialEq)]

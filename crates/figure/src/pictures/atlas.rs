@@ -4,16 +4,16 @@
 
 mod closed_forms;
 
+use stickslip_model::text::number;
 use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
-use stickslip_tracer::Location;
+use stickslip_tracer::{Location, Point};
 
 use closed_forms::ClosedForms;
 
 use crate::canvas::Legend;
-use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, Panel, Scale};
-use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, TITLE};
+use crate::canvas::shape::Rectangle;
+use crate::canvas::style::{self, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 use crate::pictures::regions;
 
@@ -27,15 +27,6 @@ const LINE: f64 = 18.0;
 /// Width of the key of a line in the legend.
 const KEY: f64 = 28.0;
 
-/// All kinds of boundaries in the order of the legend, with their names.
-pub(super) const KINDS: [(BoundaryKind, &str, &str); 5] = [
-    (BoundaryKind::EndOfContact, "end-of-contact", "switch at the end of contact"),
-    (BoundaryKind::StickGraze, "stick-graze", "graze while sticking"),
-    (BoundaryKind::SlipGraze, "slip-graze", "graze while sliding"),
-    (BoundaryKind::StartOfContact, "start-of-contact", "slip from the start"),
-    (BoundaryKind::StartOfTail, "start-of-tail", "slip from where the force attracts"),
-];
-
 /// Draws `atlas`.
 ///
 /// The legend names the kinds of boundaries, vertices and limits that are in the picture.
@@ -44,7 +35,7 @@ pub fn draw(atlas: &Atlas) -> Svg {
     let title = title(atlas);
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
     svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
-    let window = &atlas.frame;
+    let window = &atlas.frame();
     let (kappa, psi) = ((window.kappa.low, window.kappa.high), (window.psi.low, window.psi.high));
     let wide = kappa.1 > 10.0 * kappa.0;
     let scales = (if wide { Scale::Logarithmic } else { Scale::Linear }, Scale::Linear);
@@ -59,22 +50,29 @@ pub fn draw(atlas: &Atlas) -> Svg {
 
     let boundaries = boundaries(atlas);
     let mut legend = Legend::new(LEGEND_AT);
-    for (kind, class, text) in KINDS {
+    for (kind, class, text) in style::KINDS {
         let mut lines = boundaries.iter().filter(|boundary| boundary.0 == kind).peekable();
         if lines.peek().is_some() {
             legend.entry(&mut svg, KEY, text, |svg, key| {
                 let y = key.top + 0.5 * key.height;
-                svg.line((key.left, y), (key.right(), y), stroke(kind));
+                svg.line((key.left, y), (key.right(), y), style::boundary(kind));
             });
         }
         svg.begin_group(class);
         for (_, points) in lines {
-            panel.curve(&mut svg, points.iter().copied(), stroke(kind));
+            panel.curve(&mut svg, points.iter().copied(), style::boundary(kind));
         }
         svg.end_group();
     }
     vertices(&mut svg, atlas, &panel, &mut legend);
     labels(&mut svg, atlas, &panel);
+    let lines: Vec<_> = boundaries.into_iter().map(|(_, points)| points).collect();
+    let parameters = |point: &Point| atlas.plane.chart().parameters(point).into();
+    regions::hints(&mut svg, &panel, &atlas.regions, &lines, parameters, |region| {
+        let itinerary = atlas.itinerary(region);
+        let count = switch_count(itinerary);
+        format!("{itinerary}: {count} {}", if count == 1 { "switch" } else { "switches" })
+    });
     panel.border(&mut svg);
     for edge in [Edge::Bottom, Edge::Left] {
         panel.ticks(&mut svg, edge, true);
@@ -93,17 +91,6 @@ pub fn boundaries(atlas: &Atlas) -> Vec<(BoundaryKind, Vec<(f64, f64)>)> {
     curves.zip(atlas.polylines()).map(|(curve, line)| (curve.margin, points(line))).collect()
 }
 
-/// The stroke of the boundaries of a kind.
-#[must_use]
-pub fn stroke(kind: BoundaryKind) -> Stroke {
-    match kind {
-        BoundaryKind::EndOfContact => BOUNDARY_END,
-        BoundaryKind::StickGraze => BOUNDARY_STICK,
-        BoundaryKind::SlipGraze => BOUNDARY_SLIP,
-        BoundaryKind::StartOfContact | BoundaryKind::StartOfTail => BOUNDARY_START,
-    }
-}
-
 /// The size of an atlas, and the parameters that all its collisions have in common.
 fn title(atlas: &Atlas) -> String {
     let boundaries = match atlas.regions.curves().len() {
@@ -114,11 +101,12 @@ fn title(atlas: &Atlas) -> String {
         1 => "1 region with its number of switches".to_owned(),
         count => format!("{count} regions with their numbers of switches"),
     };
-    let reduction = atlas.frame.ratio.map(|ratio| ratio.reduction);
+    let reduction = atlas.ratio.map(|ratio| ratio.reduction);
+    let frame = atlas.frame();
     let (mu, alpha) = (reduction.map(|r| r.mu), reduction.map(|r| r.alpha));
     let parameters = [
-        ("a", Some(atlas.frame.damping)),
-        ("b", Some(atlas.frame.tangential_damping).filter(|damping| *damping != 0.0)),
+        ("a", Some(frame.damping)),
+        ("b", Some(frame.tangential_damping).filter(|damping| *damping != 0.0)),
         ("μ", mu),
         ("α", alpha),
     ];
@@ -132,16 +120,19 @@ fn title(atlas: &Atlas) -> String {
 fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
     let places = atlas.regions.vertices().iter();
     let places = places
-        .map(|vertex| (vertex.kind, panel.place(atlas.chart.parameters(&vertex.point).into())));
+        .map(|vertex| (vertex.kind, panel.place(atlas.plane.parameters(&vertex.point).into())));
     regions::vertices(svg, &places.collect::<Vec<_>>(), legend);
 }
 
-/// Writes the number of switches into each region that has room for it.
+/// Writes the number of switches into each region, or beside it.
 fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
-    let region = |(kappa, psi)| match atlas.regions.locate(&atlas.chart.point(kappa, psi)) {
+    let region = |(kappa, psi)| match atlas.regions.locate(&atlas.plane.point(kappa, psi)) {
         Location::Region(region) => Some(region),
         _ => None,
     };
     let text = |region: usize| switch_count(atlas.itinerary(region)).to_string();
-    regions::labels(svg, panel, region, text);
+    let samples = atlas.regions.regions().iter();
+    let samples: Vec<_> =
+        samples.map(|region| atlas.plane.chart().parameters(&region.sample).into()).collect();
+    regions::labels(svg, panel, region, &samples, text);
 }

@@ -1,10 +1,11 @@
 //! The picture of one collision: forces above, velocity below, against time.
 
 use stickslip_model::history::History;
+use stickslip_model::spheres::{Encounter, ImpactReport};
+use stickslip_model::text::number;
 use stickslip_model::{Collision, Contact, Normal};
 
-use super::course::{self, Course};
-use crate::canvas::number::number;
+use super::course::{self, Course, Units};
 use crate::canvas::panel::Edge;
 use crate::canvas::shape::Rectangle;
 use crate::canvas::style::TITLE;
@@ -17,6 +18,8 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 560.0;
 const FORCES: Rectangle = Rectangle { left: 80.0, top: 70.0, width: PANEL_WIDTH, height: 270.0 };
 const VELOCITY: Rectangle = Rectangle { top: 352.0, height: 156.0, ..FORCES };
+/// The number of moments of an animation.
+const FRAMES: u32 = 75;
 const TITLE_AT: (f64, f64) = (80.0, 22.0);
 const LEGEND_AT: (f64, f64) = (80.0, 50.0);
 
@@ -28,22 +31,53 @@ pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
 /// Draws `collision`, whose course is `history`.
 #[must_use]
 pub fn draw(collision: &Collision, history: &History) -> Svg {
-    let title = title(collision);
-    let mut svg = Svg::new(WIDTH, HEIGHT, &title);
-    svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
+    let [force, time] = axes(&collision.contact);
     let course = Course::new(collision, history, FORCES.width);
-    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(&course), "F_t/μ, w");
+    panels(&title(collision), &course, [force, time, "velocity w = (α/μ) g_t/g_n"])
+}
+
+/// The same picture at successive moments, up to which it is drawn, for an animation: the moments
+/// are evenly spaced, and the last one is the end of contact.
+pub fn frames(collision: &Collision, history: &History) -> impl Iterator<Item = Svg> {
+    let [force, time] = axes(&collision.contact);
+    let title = title(collision);
+    let whole = Course::new(collision, history, FORCES.width);
+    (1..=FRAMES).filter_map(move |frame| {
+        let moment = history.at(history.duration() * (f64::from(frame) / f64::from(FRAMES)))?;
+        let course = whole.clone().until(moment);
+        Some(panels(&title, &course, [force, time, "velocity w = (α/μ) g_t/g_n"]))
+    })
+}
+
+/// Draws an impact that is not central, whose course is `history`, in SI units.
+#[must_use]
+pub fn draw_impact(report: &ImpactReport, history: &History) -> Svg {
+    let Encounter { impact, .. } = &report.encounter;
+    let units = Units {
+        time: impact.time_unit_s,
+        force: impact.force_unit_n(),
+        velocity: impact.velocity_m_per_s(1.0),
+    };
+    let course = Course::new(&report.collision, history, FORCES.width).in_units(units);
+    let names = ["force [N]", "time [s]", "velocity of the surfaces [m/s]"];
+    panels(&title(&report.collision), &course, names)
+}
+
+/// Draws the panels of a course, with the names of the axes of force, time and velocity.
+fn panels(title: &str, course: &Course<'_>, [force, time, speed]: [&str; 3]) -> Svg {
+    let mut svg = Svg::new(WIDTH, HEIGHT, title);
+    svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
+    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(course));
 
     let forces = course.forces(&mut svg, FORCES, course.largest_force());
     forces.ticks(&mut svg, Edge::Left, true);
     forces.ticks(&mut svg, Edge::Bottom, false);
-    let [force, time] = axes(&collision.contact);
     forces.name(&mut svg, Edge::Left, 58.0, force);
 
     let velocity = course.velocity(&mut svg, VELOCITY);
     velocity.ticks(&mut svg, Edge::Left, true);
     velocity.ticks(&mut svg, Edge::Bottom, true);
-    velocity.name(&mut svg, Edge::Left, 58.0, "velocity w = (α/μ) g_t/g_n");
+    velocity.name(&mut svg, Edge::Left, 58.0, speed);
     velocity.name(&mut svg, Edge::Bottom, 36.0, time);
     svg
 }

@@ -25,6 +25,25 @@ const MOST_SAMPLES: f64 = 20_000.0;
 pub struct Course<'a> {
     history: &'a History,
     samples: Vec<Snapshot>,
+    units: Units,
+    /// The moment up to which it is drawn, if that is not the end.
+    until: Option<Snapshot>,
+}
+
+/// The units in which a course is drawn, in those of its values.
+#[derive(Clone, Copy, Debug)]
+pub struct Units {
+    /// Of time.
+    pub time: f64,
+    /// Of forces.
+    pub force: f64,
+    /// Of the tangential velocity.
+    pub velocity: f64,
+}
+
+impl Units {
+    /// The units of the values themselves.
+    const SCALED: Self = Self { time: 1.0, force: 1.0, velocity: 1.0 };
 }
 
 impl<'a> Course<'a> {
@@ -33,7 +52,24 @@ impl<'a> Course<'a> {
     pub fn new(collision: &Collision, history: &'a History, width: f64) -> Self {
         let phases = history.phases();
         let samples = phases.flat_map(|phase| samples(collision, history, phase, width)).collect();
-        Self { history, samples }
+        Self { history, samples, units: Units::SCALED, until: None }
+    }
+
+    /// The same course, drawn in other units.
+    #[must_use]
+    pub fn in_units(self, units: Units) -> Self {
+        Self { units, ..self }
+    }
+
+    /// The same course, drawn up to a moment.
+    #[must_use]
+    pub fn until(self, moment: Snapshot) -> Self {
+        Self { until: Some(moment), ..self }
+    }
+
+    /// The time up to which it is drawn.
+    fn last(&self) -> f64 {
+        self.until.map_or(f64::INFINITY, |moment| moment.time)
     }
 
     /// The moments that are drawn; at a switch there are two.
@@ -45,16 +81,18 @@ impl<'a> Course<'a> {
     /// The largest normal force.
     #[must_use]
     pub fn largest_force(&self) -> f64 {
-        self.samples.iter().fold(0.0_f64, |most, sample| most.max(sample.normal_force))
+        let most = self.samples.iter().fold(0.0_f64, |most, sample| most.max(sample.normal_force));
+        self.units.force * most
     }
 
     /// Draws the forces into `frame`. A force of `largest` is near its upper edge, and of
     /// −`largest` near its lower one.
     pub fn forces(&self, svg: &mut Svg, frame: Rectangle, largest: f64) -> Panel {
         let panel = self.panel(svg, frame, (-largest, largest));
-        panel.curve(svg, self.curve(|sample| sample.normal_force), NORMAL);
-        panel.curve(svg, self.curve(|sample| -sample.normal_force), NORMAL_MIRRORED);
-        panel.curve(svg, self.curve(|sample| sample.tangential_force), TANGENTIAL);
+        let force = self.units.force;
+        panel.curve(svg, self.curve(force, |sample| sample.normal_force), NORMAL);
+        panel.curve(svg, self.curve(-force, |sample| sample.normal_force), NORMAL_MIRRORED);
+        panel.curve(svg, self.curve(force, |sample| sample.tangential_force), TANGENTIAL);
         panel.border(svg);
         panel
     }
@@ -64,35 +102,43 @@ impl<'a> Course<'a> {
         let range = self.samples.iter().fold((0.0_f64, 0.0_f64), |(low, high), sample| {
             (low.min(sample.velocity), high.max(sample.velocity))
         });
-        let panel = self.panel(svg, frame, range);
-        panel.curve(svg, self.curve(|sample| sample.velocity), TANGENTIAL);
+        let unit = self.units.velocity;
+        let panel = self.panel(svg, frame, (unit * range.0, unit * range.1));
+        panel.curve(svg, self.curve(unit, |sample| sample.velocity), TANGENTIAL);
         panel.border(svg);
         panel
     }
 
-    fn curve(&self, of: fn(&Snapshot) -> f64) -> impl Iterator<Item = (f64, f64)> {
-        self.samples.iter().map(move |sample| (sample.time, of(sample)))
+    /// A quantity over the time, in the `unit` in which it is drawn.
+    fn curve(&self, unit: f64, of: fn(&Snapshot) -> f64) -> impl Iterator<Item = (f64, f64)> {
+        let place = move |sample: &Snapshot| (sample.time * self.units.time, unit * of(sample));
+        let last = self.last();
+        let drawn = self.samples.iter().filter(move |sample| sample.time <= last);
+        drawn.chain(&self.until).map(place)
     }
 
     /// Draws the phases, the switches and the line of zero.
     fn panel(&self, svg: &mut Svg, frame: Rectangle, range: (f64, f64)) -> Panel {
-        let duration = self.history.duration();
+        let unit = self.units.time;
+        let duration = unit * self.history.duration();
         let time = (-0.012 * duration, 1.012 * duration);
         let panel = Panel { frame, x: time, y: padded(range), scales: LINEAR };
+        let last = self.last();
+        let begun = || self.history.phases().filter(|phase| phase.begin().time <= last);
         svg.begin_group("phases");
-        for phase in self.history.phases() {
+        for phase in begun() {
             let colour = match (phase.regime(), phase.side()) {
                 (Regime::Stick, _) => continue,
                 (Regime::Slip, Side::Positive) => SLIP_POSITIVE,
                 (Regime::Slip, Side::Negative) => SLIP_NEGATIVE,
             };
-            panel.span(svg, (phase.begin().time, phase.end().time), colour);
+            panel.span(svg, (unit * phase.begin().time, unit * phase.end().time.min(last)), colour);
         }
         svg.end_group();
         panel.horizontal(svg, 0.0, RULE);
         svg.begin_group("switches");
-        for phase in self.history.phases().skip(1) {
-            let (x, _) = panel.place((phase.begin().time, 0.0));
+        for phase in begun().skip(1) {
+            let (x, _) = panel.place((unit * phase.begin().time, 0.0));
             svg.line((x, panel.frame.top), (x, panel.frame.top + MARK), FRAME);
         }
         svg.end_group();
@@ -126,10 +172,9 @@ fn padded((low, high): (f64, f64)) -> (f64, f64) {
     (low - pad, high + pad)
 }
 
-/// Draws the legend of `courses` at a place; `tangential` names the tangential lines.
-///
-/// It names the phases that occur, and switches if there are any.
-pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>], tangential: &str) {
+/// Draws the legend of the forces of `courses` at a place. It names the phases that occur, and
+/// switches if there are any. The only line of a velocity is named by its axis.
+pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>]) {
     let mut legend = Legend::new(at);
     let phases = || courses.iter().flat_map(|course| course.history.phases());
     for (text, regime, side, colour) in [
@@ -154,7 +199,7 @@ pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>], tangential:
             svg.line((x, y - 0.5 * MARK), (x, y + 0.5 * MARK), FRAME);
         });
     }
-    for (text, stroke) in [("F_n", NORMAL), ("−F_n", NORMAL_MIRRORED), (tangential, TANGENTIAL)] {
+    for (text, stroke) in [("F_n", NORMAL), ("−F_n", NORMAL_MIRRORED), ("F_t/μ", TANGENTIAL)] {
         legend.entry(svg, KEY, text, |svg, key| {
             let y = key.top + 0.5 * key.height;
             svg.line((key.left, y), (key.right(), y), stroke);

@@ -1,15 +1,13 @@
 //! The picture of an atlas of any family.
 
-use stickslip_solver::margin::{Margin, Place};
-use stickslip_tracer::{Atlas, Itinerary, Location, Point, Unresolved};
+use stickslip_solver::margin::Margin;
+use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point, RunNames, Unresolved};
 
 use super::regions;
 use crate::canvas::Legend;
 use crate::canvas::panel::{Edge, LINEAR, Panel};
-use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{
-    BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, TEXT, TITLE,
-};
+use crate::canvas::shape::Rectangle;
+use crate::canvas::style::{self, PLACES, TEXT, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
 const WIDTH: f64 = 720.0;
@@ -20,15 +18,6 @@ const TITLE_AT: (f64, f64) = (72.0, 22.0);
 const LEGENDS_AT: [(f64, f64); 2] = [(72.0, 48.0), (72.0, 68.0)];
 /// Width of the key of a line in the legend.
 const KEY: f64 = 28.0;
-/// The strokes of the kinds of curves, in the order in which they are given. Further kinds have the
-/// last one.
-pub(super) const STROKES: [Stroke; 4] =
-    [BOUNDARY_END, BOUNDARY_STICK, BOUNDARY_SLIP, BOUNDARY_START];
-
-/// The kinds of curves in the atlas of a hybrid system.
-pub(super) const KINDS: [&str; 4] =
-    ["event at the end", "graze", "order of events", "start or branch"];
-
 /// What the picture of an atlas says in words.
 #[derive(Clone, Copy)]
 pub struct Captions<'a, Label, Margin> {
@@ -36,37 +25,32 @@ pub struct Captions<'a, Label, Margin> {
     pub title: &'a str,
     /// The names of the two coordinates, with their units.
     pub axes: [&'a str; 2],
-    /// The kinds of curves in the legend.
+    /// The kinds of curves in the legend. They have the strokes of [`style::PLACES`] in this order;
+    /// further kinds have the last one.
     pub kinds: &'a [&'a str],
     /// The kind of a curve on which a margin vanishes, as an index of `kinds`.
     pub kind: &'a dyn Fn(&Margin) -> usize,
     /// A short text for the regions with a label.
     pub text: &'a dyn Fn(&Label) -> String,
+    /// The text that browsers show where the pointer is over such a region.
+    pub hint: &'a dyn Fn(&Label) -> String,
 }
 
 /// Draws the atlas of a hybrid system, with the number of events in each region.
 #[must_use]
-pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, family: &str, axes: [&str; 2]) -> Svg {
+pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, names: &RunNames) -> Svg {
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
+    let (family, axes) = (&names.family, names.axes());
     let title =
         format!("{family}: {curves} boundaries, {regions} regions with their number of events");
-    let text = |label: &Itinerary| match label {
-        Itinerary::Fires(guards) => guards.len().to_string(),
-        Itinerary::Begins(guards) => format!("{}+", guards.len()),
-        Itinerary::Accumulates => "∞".to_owned(),
-        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+    let text = |label: &Itinerary| names.short(label);
+    let kinds = &PLACES.map(|(_, words, _)| words);
+    let hint = |label: &Itinerary| match label {
+        Itinerary::Fires(guards) if guards.is_empty() => "no events".to_owned(),
+        label => names.text(label),
     };
-    draw(atlas, &Captions { title: &title, axes, kinds: &KINDS, kind: &kind, text: &text })
-}
-
-/// The kind of a curve on which a margin vanishes, as an index of [`KINDS`].
-pub(super) fn kind(margin: &Margin) -> usize {
-    match margin.place {
-        Place::End => 0,
-        Place::Minimum { .. } | Place::Maximum { .. } => 1,
-        Place::Exit(_) => 2,
-        Place::Start { .. } | Place::Branch(_) => 3,
-    }
+    let (kind, text, hint) = (&style::place, &text, &hint);
+    draw(atlas, &Captions { title: &title, axes, kinds, kind, text, hint })
 }
 
 /// Draws an atlas in its coordinates, with linear axes. Regions in doubt have the text `?`.
@@ -82,7 +66,7 @@ pub fn draw<Label, Margin>(
     let panel = Panel { frame: FRAME_AT, x, y, scales: LINEAR };
     let [mut legend, mut marks] = LEGENDS_AT.map(Legend::new);
     for (index, text) in captions.kinds.iter().enumerate() {
-        let stroke = STROKES[index.min(STROKES.len() - 1)];
+        let stroke = PLACES[index.min(PLACES.len() - 1)].2;
         let curves = atlas.plane.curves().iter();
         let mut curves = curves.filter(|curve| (captions.kind)(&curve.margin) == index).peekable();
         if curves.peek().is_some() {
@@ -107,12 +91,20 @@ pub fn draw<Label, Margin>(
         Location::Region(region) => Some(region),
         _ => None,
     };
-    regions::labels(&mut svg, &panel, region, |region| {
+    let words = |region: usize, of: &dyn Fn(&Label) -> String, unknown: &str| {
         let label = atlas.plane.regions()[region].label.as_ref();
-        match label.filter(|_| !atlas.is_doubtful(region)) {
-            Some(label) => (captions.text)(label),
-            None => "?".to_owned(),
-        }
+        label.filter(|_| !atlas.is_doubtful(region)).map_or_else(|| unknown.to_owned(), of)
+    };
+    let samples = atlas.plane.regions().iter().map(|region| (region.sample.x, region.sample.y));
+    let samples: Vec<_> = samples.collect();
+    regions::labels(&mut svg, &panel, region, &samples, |it| words(it, captions.text, "?"));
+    let lines = atlas.plane.curves().iter().map(|curve| {
+        curve.polyline(&extent).iter().map(|point| (point.x, point.y)).collect::<Vec<_>>()
+    });
+    let value = |point: &Point| (point.x, point.y);
+    let lines: Vec<_> = lines.collect();
+    regions::hints(&mut svg, &panel, &atlas.plane, &lines, value, |it| {
+        words(it, captions.hint, "in doubt")
     });
     panel.border(&mut svg);
     for edge in [Edge::Bottom, Edge::Left] {

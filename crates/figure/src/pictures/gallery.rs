@@ -44,7 +44,7 @@ pub fn draw(title: &str, exhibits: &[Exhibit]) -> Svg {
         .iter()
         .map(|exhibit| Course::new(&exhibit.collision, &exhibit.history, FIRST.width))
         .collect();
-    course::legend(&mut svg, LEGEND_AT, &courses, "F_t/μ");
+    course::legend(&mut svg, LEGEND_AT, &courses);
     let largest = courses.iter().map(Course::largest_force).fold(0.0, f64::max);
     for (index, (exhibit, course)) in exhibits.iter().zip(&courses).enumerate() {
         let (column, row) = (index % COLUMNS, index / COLUMNS);

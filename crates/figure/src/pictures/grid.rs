@@ -1,10 +1,10 @@
 //! The picture of a map on a grid: ε_t and the number of switches.
 
 use stickslip_model::Reduction;
+use stickslip_model::text::number;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Tile};
 
 use super::map::{self, MapAxis, MapPanel, Values};
-use crate::canvas::number::number;
 use crate::canvas::svg::Svg;
 use crate::error::FigureError;
 

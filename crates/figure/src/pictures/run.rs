@@ -3,7 +3,7 @@
 use crate::canvas::Legend;
 use crate::canvas::panel::{Edge, LINEAR, Panel};
 use crate::canvas::shape::Rectangle;
-use crate::canvas::style::{FRAME, RULE, TANGENTIAL, TITLE};
+use crate::canvas::style::{FRAME, MODES, RULE, TANGENTIAL, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
 /// A run as it is drawn.
@@ -24,9 +24,6 @@ pub struct Run<'a> {
     /// Times of events.
     pub events: Vec<f64>,
 }
-
-/// Shades of modes, which differ in lightness too. Further modes begin again.
-const SHADES: [&str; 6] = ["#FFFFFF", "#F8D8A8", "#DDF0FA", "#D9C3DC", "#CDE5C8", "#F3C7BE"];
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 84.0;
@@ -80,8 +77,8 @@ fn panel(svg: &mut Svg, run: &Run<'_>, component: usize, frame: Rectangle) -> Pa
     };
     svg.begin_group("modes");
     for &(mode, from, to) in &run.stays {
-        let shade = SHADES[mode % SHADES.len()];
-        if shade != SHADES[0] {
+        let shade = MODES[mode % MODES.len()];
+        if shade != MODES[0] {
             panel.span(svg, (from, to), shade);
         }
     }
@@ -119,9 +116,9 @@ fn legend(svg: &mut Svg, run: &Run<'_>) {
     seen.dedup();
     // A single mode needs no name.
     if seen.len() > 1 {
-        for &mode in seen.iter().take(SHADES.len()) {
+        for &mode in seen.iter().take(MODES.len()) {
             legend.entry(svg, KEY, run.modes[mode], |svg, at| {
-                svg.fill(at, SHADES[mode % SHADES.len()]);
+                svg.fill(at, MODES[mode % MODES.len()]);
                 svg.outline(at, FRAME);
             });
         }

@@ -1,17 +1,19 @@
 //! The picture of a stack: small atlases at several dampings, and a line of births and deaths.
 
+use stickslip_model::text::number;
 use stickslip_plane::atlas::BoundaryKind;
-use stickslip_plane::stack::{DampingChange, DampingLayer, DampingStack};
+use stickslip_plane::stack::{DampingLayer, DampingStack};
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Change, Effect, Itinerary, Layer, Stack};
+use stickslip_tracer::{Change, Effect, Itinerary, Layer, Names, Point, RunNames, Stack};
 
-use super::atlas::{KINDS, boundaries, stroke};
-use super::family::{KINDS as KINDS_OF_RUNS, STROKES, kind};
+use super::atlas::boundaries;
 use crate::canvas::Legend;
-use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, LINEAR, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{FRAME, RULE, SMALL, TEXT, TITLE};
+use crate::canvas::style::{
+    self, FRAME, GREEN, INK, KINDS, ORANGE, PLACES, PURPLE, RULE, SKY, SMALL, TEXT, TITLE,
+    VERMILION,
+};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
 const COLUMNS: usize = 4;
@@ -29,16 +31,16 @@ const LINE_LEFT: f64 = 190.0;
 const ROW: f64 = 24.0;
 const ABOVE: f64 = 86.0;
 /// The ring around a place where regions change.
-const RING: (f64, Stroke) = (4.0, Stroke::full("#CC79A7", 1.6));
+const RING: (f64, Stroke) = (4.0, Stroke::full(PURPLE, 1.6));
 
 /// What becomes of regions: the name in data, the words in the picture, and the colour. The rows
 /// tell them apart as well, and the colours are those of Okabe and Ito.
 const EFFECTS: [(&str, &str, &str); 5] = [
-    ("born", "a region is born", "#009E73"),
-    ("splits", "a region splits", "#56B4E9"),
-    ("merge", "regions merge", "#E69F00"),
-    ("dies", "a region dies", "#D55E00"),
-    ("", "neighbours change", "#222222"),
+    ("born", "a region is born", GREEN),
+    ("splits", "a region splits", SKY),
+    ("merge", "regions merge", ORANGE),
+    ("dies", "a region dies", VERMILION),
+    ("", "neighbours change", INK),
 ];
 
 /// What is drawn, whoever has traced it.
@@ -77,23 +79,21 @@ struct Turn {
 #[must_use]
 pub fn draw(stack: &DampingStack) -> Svg {
     let has = |kind: BoundaryKind| {
-        let mut atlases = stack.layers.iter().map(|layer| &layer.atlas.atlas);
+        let mut atlases = stack.layers.iter().map(|layer| &layer.atlas);
         atlases.any(|atlas| atlas.regions.curves().iter().any(|curve| curve.margin == kind))
     };
     let kinds = KINDS.into_iter().filter(|(kind, ..)| has(*kind));
     let sheet = |layer: &DampingLayer| {
-        let atlas = &layer.atlas.atlas;
-        let curves =
-            boundaries(atlas).into_iter().map(|(kind, points)| (thin(stroke(kind)), points));
+        let atlas = &layer.atlas;
+        let curves = boundaries(atlas)
+            .into_iter()
+            .map(|(kind, points)| (thin(style::boundary(kind)), points));
         let regions = atlas.regions.regions().len();
         Sheet { value: layer.damping, regions, curves: curves.collect() }
     };
-    let turn = |change: &DampingChange| Turn {
-        between: change.between,
-        meeting: change.meeting.as_ref().map(|it| (it.damping, (it.kappa, it.psi))),
-        effects: change.effects.iter().map(|it| it.effect).collect(),
-    };
-    let window = [stack.frame.kappa, stack.frame.psi].map(|side| (side.low, side.high));
+    let sheet_of_all = stack.plane.sheet();
+    let turn = |change| Turn::of(change, |point| sheet_of_all.snapped(point));
+    let window = sheet_of_all.sides.map(|side| (side.low, side.high));
     let x_scale = if window[0].1 > 10.0 * window[0].0 { Scale::Logarithmic } else { Scale::Linear };
     let drawing = Drawing {
         title: format!("Atlases at {} scaled dampings a", stack.layers.len()),
@@ -101,7 +101,7 @@ pub fn draw(stack: &DampingStack) -> Svg {
         over: "a".to_owned(),
         window,
         scales: (x_scale, Scale::Linear),
-        kinds: kinds.map(|(kind, _, text)| (text, thin(stroke(kind)))).collect(),
+        kinds: kinds.map(|(kind, _, text)| (text, thin(style::boundary(kind)))).collect(),
         sheets: stack.layers.iter().map(sheet).collect(),
         turns: stack.changes.iter().map(turn).collect(),
     };
@@ -110,29 +110,21 @@ pub fn draw(stack: &DampingStack) -> Svg {
 
 /// The same picture of the atlases of a hybrid system over its parameter `over`.
 #[must_use]
-pub fn draw_runs(
-    stack: &Stack<Itinerary, Margin>,
-    family: &str,
-    axes: [&str; 2],
-    over: &str,
-) -> Svg {
+pub fn draw_runs(stack: &Stack<Itinerary, Margin>, names: &RunNames, over: &str) -> Svg {
+    let (family, axes) = (&names.family, names.axes());
     let sheet = |layer: &Layer<Itinerary, Margin>| {
         let plane = &layer.atlas.plane;
         let curves = plane.curves().iter().map(|curve| {
             let points = curve.polyline(&plane.window().extent());
             let points = points.iter().map(|point| (point.x, point.y)).collect();
-            (thin(STROKES[kind(&curve.margin)]), points)
+            (thin(PLACES[style::place(&curve.margin)].2), points)
         });
         Sheet { value: layer.value, regions: plane.regions().len(), curves: curves.collect() }
     };
-    let turn = |change: &Change<Itinerary>| Turn {
-        between: change.between,
-        meeting: change.meeting.map(|it| (it.value, (it.point.x, it.point.y))),
-        effects: change.effects.iter().map(Effect::name).collect(),
-    };
+    let turn = |change| Turn::of(change, |point| (*point).into());
     let curves = || stack.layers.iter().flat_map(|layer| layer.atlas.plane.curves());
-    let has = |index: usize| curves().any(|curve| kind(&curve.margin) == index);
-    let kinds = KINDS_OF_RUNS.into_iter().zip(STROKES).enumerate().filter(|(it, _)| has(*it));
+    let has = |index: usize| curves().any(|curve| style::place(&curve.margin) == index);
+    let kinds = PLACES.into_iter().enumerate().filter(|(index, _)| has(*index));
     let window = stack.layers.first().map(|layer| *layer.atlas.plane.window());
     let window =
         window.map_or([(0.0, 1.0); 2], |it| [(it.low.x, it.high.x), (it.low.y, it.high.y)]);
@@ -142,7 +134,7 @@ pub fn draw_runs(
         over: over.to_owned(),
         window,
         scales: LINEAR,
-        kinds: kinds.map(|(_, (text, stroke))| (text, thin(stroke))).collect(),
+        kinds: kinds.map(|(_, (_, text, stroke))| (text, thin(stroke))).collect(),
         sheets: stack.layers.iter().map(sheet).collect(),
         turns: stack.changes.iter().map(turn).collect(),
     };
@@ -281,6 +273,15 @@ impl Drawing {
 }
 
 impl Turn {
+    /// A change of atlases with any labels; `place` converts from traced coordinates.
+    fn of<Label>(change: &Change<Label>, place: impl Fn(&Point) -> [f64; 2]) -> Self {
+        Self {
+            between: change.between,
+            meeting: change.meeting.map(|it| (it.value, place(&it.point).into())),
+            effects: change.effects.iter().map(Effect::name).collect(),
+        }
+    }
+
     /// Whether the change does this to a region; the empty name stands for changes without effects.
     fn has(&self, effect: &str) -> bool {
         self.effects.contains(&effect) || (effect.is_empty() && self.effects.is_empty())

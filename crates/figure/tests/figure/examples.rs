@@ -9,12 +9,14 @@ use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::pictures::chart::{Chart, ChartAxis, Mark, Series, Shape};
 use stickslip_figure::pictures::gallery::Exhibit;
 use stickslip_figure::pictures::map::{MapAxis, MapPanel, Values};
-use stickslip_figure::pictures::{atlas, chart, collision, gallery, grid, map};
+use stickslip_figure::pictures::{self, atlas, chart, collision, gallery, grid, map};
 use stickslip_model::history::History;
 use stickslip_model::{Collider, Collision, Contact, Engine};
 use stickslip_plane::atlas::{Atlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range, sweep};
+use stickslip_practice::time_steps;
+use stickslip_studies::stiff_springs;
 
 /// A collision with its course.
 pub fn followed(kappa: f64, psi: f64, damping: f64) -> (Collision, History) {
@@ -76,7 +78,7 @@ pub fn restitution(largest: f64) -> Svg {
 pub fn traced(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Atlas {
     let range = |(low, high)| Range { low, high };
     let frame = Frame::new(range(kappa), range(psi), damping);
-    trace(frame, frame.tolerances().usual, SILENT).unwrap().atlas
+    trace(frame, frame.tolerances().usual, SILENT).unwrap()
 }
 
 /// Atlases that several tests draw.
@@ -139,30 +141,30 @@ pub fn all() -> &'static [(String, Svg)] {
 }
 
 fn drawn() -> Vec<(String, Svg)> {
-    let mut pictures = Vec::new();
+    let mut drawn = Vec::new();
     for (kappa, psi, damping) in
         [(63.0, 0.5, 0.0), (18.0, 1.0, 0.2), (1e4, 0.5, 0.0), (5.0, 1e6, 0.0), (1e-3, 1e-13, 0.0)]
     {
         let name = format!("collision at {kappa}, {psi}, {damping}");
-        pictures.push((name, collision(kappa, psi, damping)));
+        drawn.push((name, collision(kappa, psi, damping)));
     }
     let contacts = [2.5, 1.5, 1.2, 0.7, 0.4].map(|psi| (63.0, psi));
     for count in [0, 1, 5] {
-        pictures.push((format!("{count} collisions"), gallery(&contacts[..count])));
+        drawn.push((format!("{count} collisions"), gallery(&contacts[..count])));
     }
     for (kappa, psi) in
         [((0.0, 70.0), (0.0, 2.9)), ((0.0, 4e16), (3.0, 4.0)), ((0.0, 5.0), (2.5, 9.0))]
     {
-        pictures.push((format!("grid of {kappa:?}"), grid(kappa, psi, Engine::Exact)));
+        drawn.push((format!("grid of {kappa:?}"), grid(kappa, psi, Engine::Exact)));
     }
     for largest in [1.0, 0.83, 0.17, 0.0213, 2e-4] {
-        pictures.push((format!("restitution up to {largest}"), restitution(largest)));
+        drawn.push((format!("restitution up to {largest}"), restitution(largest)));
     }
     let Atlases { large, crossing, damped, empty } = atlases();
     for (name, made) in
         [("large", large), ("crossing", crossing), ("damped", damped), ("empty", empty)]
     {
-        pictures.push((format!("{name} atlas"), atlas::draw(made)));
+        drawn.push((format!("{name} atlas"), atlas::draw(made)));
     }
     for (x, y) in [
         ((10.0, 1e8), (1e-10, 1.0)),
@@ -171,7 +173,7 @@ fn drawn() -> Vec<(String, Svg)> {
         ((5.0, 100.0), (5.0, 1e6)),
         ((1e-9, 1e9), (1e-30, 1e30)),
     ] {
-        pictures.push((format!("powers over {x:?}"), powers(x, y)));
+        drawn.push((format!("powers over {x:?}"), powers(x, y)));
     }
     let linear = Chart {
         title: "F(phase)",
@@ -179,6 +181,15 @@ fn drawn() -> Vec<(String, Svg)> {
         y: axis((0.0, 5e6), Scale::Linear),
         series: vec![series("", &[(-0.5, 1e6)]), series("inner problem", &[(-0.5, 1e6)])],
     };
-    pictures.push(("linear chart".to_owned(), chart::draw(&linear)));
-    pictures
+    drawn.push(("linear chart".to_owned(), chart::draw(&linear)));
+    let contacts = vec![Contact::new(4.0, 0.5, 0.1).unwrap()];
+    let settings = time_steps::Settings { contacts, ..time_steps::Settings::default() };
+    let steps = time_steps::run(&settings, SILENT).unwrap();
+    drawn.push(("time steps".to_owned(), pictures::time_steps::draw(&steps)));
+    let kappa = Range { low: 10.0, high: 100.0 };
+    let settings = stiff_springs::Settings { kappa, psi: vec![0.3, 1.0] };
+    let stiff = stiff_springs::run(&settings, SILENT).unwrap();
+    let stiff = pictures::studies::stiff_springs::draw(&stiff);
+    drawn.extend(stiff.into_iter().map(|picture| (picture.name, picture.svg)));
+    drawn
 }

@@ -3,7 +3,7 @@ use std::convert::Infallible;
 use stickslip_figure::pictures::family::{Captions, draw};
 use stickslip_tracer::{Family, FreeRun, Point, Surveyor, Watch, Window};
 
-use crate::svg::{texts, texts_in};
+use crate::svg::{hints, texts, texts_in};
 
 /// A guard that fires inside a circle, and one that fires below a line.
 struct Shapes;
@@ -34,6 +34,7 @@ fn an_atlas_of_any_family_has_a_picture() {
         kinds: &["circle", "line", "nothing"],
         kind: &|margin| *margin,
         text: &|label: &usize| label.to_string(),
+        hint: &|label: &usize| format!("shape {label}"),
     };
     let atlas = Surveyor::default().atlas(&Shapes, &window).unwrap();
     let svg = draw(&atlas, &captions);
@@ -45,9 +46,16 @@ fn an_atlas_of_any_family_has_a_picture() {
     let mut labels = texts_in(&svg, "regions");
     labels.sort();
     assert_eq!(labels, ["0", "1", "10", "11"]);
+    let mut shown = hints(&svg);
+    shown.sort();
+    assert_eq!(shown, ["shape 0", "shape 1", "shape 10", "shape 11"]);
 
     // Nothing is known of a survey that was cancelled.
     let watch = Watch::SILENT.cancelled_by(&|| true);
     let begun = Surveyor { watch, ..Surveyor::default() }.atlas(&Shapes, &window).unwrap();
-    assert_eq!(texts_in(&draw(&begun, &captions), "regions"), ["?"]);
+    let svg = draw(&begun, &captions);
+    assert_eq!(
+        (texts_in(&svg, "regions"), hints(&svg)),
+        (vec!["?".into()], vec!["in doubt".into()])
+    );
 }

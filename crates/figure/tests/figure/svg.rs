@@ -32,6 +32,18 @@ pub fn texts_in(svg: &Svg, class: &str) -> Vec<String> {
     groups.flat_map(words).collect()
 }
 
+/// The texts that browsers show under the pointer.
+pub fn hints(svg: &Svg) -> Vec<String> {
+    let document = svg.document();
+    let document = Document::parse(&document).unwrap();
+    let areas = document.descendants().filter(|node| node.has_tag_name("path"));
+    areas
+        .flat_map(|area| area.descendants())
+        .filter_map(|node| node.text())
+        .map(Into::into)
+        .collect()
+}
+
 /// The number of elements in all groups of a class.
 pub fn count_in(svg: &Svg, class: &str, element: &str) -> usize {
     let document = svg.document();

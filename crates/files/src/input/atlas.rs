@@ -6,7 +6,7 @@ use serde::Deserialize;
 use stickslip_plane::atlas::{Atlas, Document, SCHEMA};
 use stickslip_plane::sealed;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::Itinerary;
+use stickslip_tracer::{Itinerary, RunNames};
 
 use super::{json, source};
 use crate::error::FileError;
@@ -34,10 +34,8 @@ pub enum AnyAtlas {
 pub struct RunsAtlas {
     /// The atlas.
     pub atlas: stickslip_tracer::Atlas<Itinerary, Margin>,
-    /// The names of the parameters on its axes.
-    pub axes: [String; 2],
-    /// The names of the guards that itineraries count.
-    pub guards: Vec<String>,
+    /// Its names.
+    pub names: RunNames,
 }
 
 /// Reads an atlas; `-` is standard input.
@@ -52,9 +50,9 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     if schema == stickslip_tracer::SCHEMA {
         let document: stickslip_tracer::Document<Itinerary, Margin> =
             json::parse(&text).map_err(unusable)?;
-        let (axes, guards) = (document.axes.clone(), document.guards.clone());
+        let names = document.names();
         let atlas = document.atlas().map_err(|error| unusable(error.to_string()))?;
-        return Ok(AnyAtlas::Runs(Box::new(RunsAtlas { atlas, axes, guards })));
+        return Ok(AnyAtlas::Runs(Box::new(RunsAtlas { atlas, names })));
     }
     if schema != SCHEMA {
         return Err(unusable(format!(

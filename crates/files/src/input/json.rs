@@ -13,6 +13,17 @@ pub fn parse<T: DeserializeOwned>(text: &[u8]) -> Result<T, String> {
     Ok(value)
 }
 
+/// As [`parse`], for an object with named fields, in whose place a list of their values is refused.
+///
+/// # Errors
+/// As [`parse`].
+pub fn object<T: DeserializeOwned>(text: &[u8]) -> Result<T, String> {
+    match text.trim_ascii_start().first() {
+        Some(b'[') => Err("is a list; expected an object with named fields".to_owned()),
+        _ => parse(text),
+    }
+}
+
 fn located(error: serde_path_to_error::Error<serde_json::Error>) -> String {
     let path = error.path().to_string();
     let error = error.into_inner();

@@ -56,5 +56,5 @@ fn read(path: &Path) -> Result<Law, FileError> {
         return Err(FileError::input(path, reason.to_owned()));
     }
     let text = source::read(path, MOST_BYTES)?;
-    json::parse(&text).map_err(|reason| FileError::input(source::shown(path), reason))
+    json::object(&text).map_err(|reason| FileError::input(source::shown(path), reason))
 }

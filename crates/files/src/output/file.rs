@@ -9,11 +9,18 @@ use tempfile::NamedTempFile;
 use super::partial::Partial;
 use crate::error::FileError;
 
+/// Where the process finds its standard output by a name.
+pub const STANDARD_OUTPUT: &str = "/dev/stdout";
+
 /// The file that is written when `path` is. If `path` is a symbolic link, this is the file to which
-/// the link points, whether it exists or not. A device or a pipe has its own name.
+/// the link points, whether it exists or not. A device or a pipe has its own name, and `-` is
+/// standard output.
 #[must_use]
 pub fn target(path: &Path) -> PathBuf {
     const MOST_LINKS: usize = 40;
+    if path == Path::new("-") {
+        return STANDARD_OUTPUT.into();
+    }
     let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {
         match fs::read_link(&target) {
@@ -111,6 +118,19 @@ impl OutputFile {
     }
 }
 
+impl StoredFile {
+    /// The name of the file for readers.
+    #[must_use]
+    pub fn shown(&self) -> String {
+        let OutputFile { path, .. } = &self.0;
+        if target(path) == Path::new(STANDARD_OUTPUT) {
+            "standard output".to_owned()
+        } else {
+            path.display().to_string()
+        }
+    }
+}
+
 /// Gives files their names. All of them are complete by now.
 ///
 /// # Errors
@@ -189,7 +209,7 @@ fn stream(path: &Path) -> io::Result<File> {
     {
         use std::os::fd::AsFd;
         let own = |number: &str| OWN.iter().any(|own| path == Path::new(own).join(number));
-        if path == Path::new("/dev/stdout") || own("1") {
+        if path == Path::new(STANDARD_OUTPUT) || own("1") {
             return Ok(io::stdout().as_fd().try_clone_to_owned()?.into());
         }
         if path == Path::new("/dev/stderr") || own("2") {
@@ -212,7 +232,7 @@ const OWN: [&str; 2] = ["/dev/fd", "/proc/self/fd"];
 /// Whether `path` leads to a device, a pipe or a stream of the process. A file must not replace
 /// these.
 fn is_stream(path: &Path) -> bool {
-    let own = ["/dev/stdout", "/dev/stderr"];
+    let own = [STANDARD_OUTPUT, "/dev/stderr"];
     own.iter().chain(&OWN).any(|stream| path.starts_with(stream))
         || fs::metadata(path).is_ok_and(|existing| !existing.is_file() && !existing.is_dir())
 }

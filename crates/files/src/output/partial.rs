@@ -90,7 +90,7 @@ impl<T> Partial<T> {
         let mut incomplete = incomplete();
         let inner = create(Builder::new().prefix(&prefix).suffix(SUFFIX));
         // The whole error would show the temporary name, which the user does not know.
-        let inner = inner.map_err(|error| error.kind())?;
+        let inner = inner.map_err(|error| plain(&error))?;
         let listed = Listed(path(&inner).to_owned());
         incomplete.insert(listed.0.clone());
         Ok(Self { inner, listed })
@@ -165,4 +165,13 @@ fn ignored_signals() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// What the system reports, without the hidden name that is added to it.
+fn plain(error: &io::Error) -> io::Error {
+    let text = error.to_string();
+    match text.split_once(" at path ") {
+        Some((system, _)) => io::Error::new(error.kind(), system),
+        None => error.kind().into(),
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_figure::{FigureError, Svg, png};
+use stickslip_figure::{FigureError, Svg, gif, png};
 
 use super::file::{OutputFile, StoredFile};
 use crate::error::FileError;
@@ -64,6 +64,48 @@ impl PictureFile {
         let failed = |source| FileError::Picture { path: self.path.clone(), source };
         let bytes = bytes.map_err(failed)?;
         OutputFile::create(&self.path)?.finish(&bytes)
+    }
+}
+
+/// The file of an animation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnimationFile(PathBuf);
+
+impl AnimationFile {
+    /// The file `path`.
+    ///
+    /// # Errors
+    /// The name does not end in .gif.
+    pub fn new(path: PathBuf) -> Result<Self, String> {
+        match path.extension() {
+            Some(given) if given.eq_ignore_ascii_case("gif") => Ok(Self(path)),
+            _ => Err("not an animation; expected a name that ends in .gif".to_owned()),
+        }
+    }
+
+    /// The path of the file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Makes sure that the file can be written, before there is work to lose.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the file cannot be created.
+    pub fn probe(&self) -> Result<(), FileError> {
+        OutputFile::create(&self.0).map(drop)
+    }
+
+    /// Writes `pictures` completely, except for the name of the file.
+    ///
+    /// # Errors
+    /// [`FileError::Picture`]: they cannot be drawn. [`FileError::Output`]: the file cannot be
+    /// written.
+    pub fn write(&self, pictures: impl Iterator<Item = Svg>) -> Result<StoredFile, FileError> {
+        let failed = |source| FileError::Picture { path: self.0.clone(), source };
+        let bytes = gif(pictures).map_err(failed)?;
+        OutputFile::create(&self.0)?.finish(&bytes)
     }
 }
 

@@ -6,6 +6,7 @@ use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::margin::{Margin, Place};
 
 use crate::family::general;
+use crate::label::CollisionEvent;
 
 /// What happens on a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -25,6 +26,18 @@ pub enum BoundaryKind {
 }
 
 impl BoundaryKind {
+    /// Its name in files and pictures.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::EndOfContact => "end-of-contact",
+            Self::StickGraze => "stick-graze",
+            Self::SlipGraze => "slip-graze",
+            Self::StartOfContact => "start-of-contact",
+            Self::StartOfTail => "start-of-tail",
+        }
+    }
+
     /// The kind of a boundary on which `margin` vanishes.
     #[must_use]
     pub fn of(contact: &Contact, margin: &Margin) -> Self {
@@ -42,7 +55,7 @@ impl BoundaryKind {
 
     /// The same of a contact with any law.
     fn of_general(contact: &Contact, margin: &Margin) -> Self {
-        let begins = margin.exits.first().map(|exit| exit.guard);
+        let begins = margin.exits.first().map(general::begun_with);
         let fired = margin.exits.iter().skip(1).map(|exit| (exit.guard, exit.branch == Some(true)));
         let phases = general::phases(contact, begins, fired);
         match (margin.place, phases.last()) {
@@ -55,17 +68,17 @@ impl BoundaryKind {
     }
 }
 
-/// The itinerary of a collision in which `guards` fired: one character per phase.
-pub(crate) fn itinerary(contact: &Contact, guards: &[usize]) -> String {
+/// The itinerary of a collision with this label: one character per phase.
+pub(crate) fn itinerary(contact: &Contact, label: &[CollisionEvent]) -> String {
     if !contact.obeys_paper() {
-        return general::itinerary(contact, guards);
+        return general::itinerary(contact, label);
     }
     let character = |phase: Phase| match (phase.regime, phase.side) {
         (Regime::Stick, _) => 'o',
         (Regime::Slip, Side::Positive) => '+',
         (Regime::Slip, Side::Negative) => '-',
     };
-    phases(contact, guards.iter().copied()).map(character).collect()
+    phases(contact, label.iter().filter_map(|event| event.guard())).map(character).collect()
 }
 
 /// The first phase of a collision, and the phase after each guard that fired.

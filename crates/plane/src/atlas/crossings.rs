@@ -8,10 +8,10 @@ impl Atlas {
     /// ψ of all boundaries at `kappa`, in ascending order. They are as accurate as the boundaries.
     #[must_use]
     pub fn boundaries_at(&self, kappa: f64) -> Vec<f64> {
-        let x = self.chart.point(kappa, self.frame.psi.low).x;
+        let x = self.plane.chart().abscissa(kappa);
         let curves = self.regions.curves().iter().flat_map(|curve| curve.nodes.windows(2));
         let psi = curves.flat_map(|nodes| crossings(nodes, x));
-        let mut psi: Vec<f64> = psi.map(|place| self.chart.parameters(&place)[1]).collect();
+        let mut psi: Vec<f64> = psi.map(|place| self.plane.parameters(&place)[1]).collect();
         psi.sort_by(f64::total_cmp);
         psi
     }

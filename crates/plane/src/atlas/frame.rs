@@ -1,7 +1,6 @@
 //! The window of an atlas.
 
 use stickslip_model::{InvalidValue, Law, Reduction};
-use stickslip_tracer::{Point, Window};
 
 use crate::chart::Chart;
 use crate::family::CollisionPlane;
@@ -41,29 +40,25 @@ impl Frame {
         Self { kappa, psi, ratio: None, damping, law: Law::PAPER, tangential_damping: 0.0 }
     }
 
-    /// The coordinates in which the window is traced.
-    #[must_use]
-    pub fn chart(&self) -> Chart {
-        Chart::of(self.kappa, self.psi)
+    /// The window of a plane of κ and ψ.
+    pub(super) fn of(plane: &CollisionPlane) -> Self {
+        let [kappa, psi] = plane.sheet().sides;
+        let any = plane.first();
+        let (law, tangential_damping) = (any.law(), any.tangential_damping());
+        Self { law, tangential_damping, ..Self::new(kappa, psi, any.damping()) }
     }
 
-    /// The window in these coordinates.
-    #[must_use]
-    pub fn sheet(&self, chart: &Chart) -> Sheet {
+    /// The window in its traced coordinates.
+    fn sheet(&self) -> Sheet {
         let integrated = !self.law.acts_as_paper(self.damping, self.tangential_damping);
-        Sheet { sides: [self.kappa, self.psi], chart: *chart, integrated }
-    }
-
-    /// The window in traced coordinates.
-    #[must_use]
-    pub fn window(&self, chart: &Chart) -> Window {
-        self.sheet(chart).window()
+        let chart = Chart::of(self.kappa, self.psi);
+        Sheet { sides: [self.kappa, self.psi], chart, integrated }
     }
 
     /// The accuracies in ψ that boundaries can have.
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
-        self.sheet(&self.chart()).tolerances()
+        self.sheet().tolerances()
     }
 
     /// Refuses a window that is too narrow for the accuracy of its boundaries.
@@ -71,13 +66,7 @@ impl Frame {
     /// # Errors
     /// [`TooNarrow`] has the size of the window.
     pub fn require_wide(&self) -> Result<(), TooNarrow> {
-        self.sheet(&self.chart()).require_wide(CollisionPlane::SCALED)
-    }
-
-    /// κ and ψ of a traced point, see [`Sheet::snapped`].
-    #[must_use]
-    pub fn snapped(&self, chart: &Chart, point: &Point) -> [f64; 2] {
-        self.sheet(chart).snapped(point)
+        self.sheet().require_wide(CollisionPlane::SCALED)
     }
 
     /// The collisions in the window.

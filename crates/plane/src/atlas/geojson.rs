@@ -6,7 +6,6 @@ use stickslip_tracer::{Side, Stretch};
 
 use super::document::Document;
 use super::regions::Atlas;
-use super::tracing::VerifiedAtlas;
 use crate::chart::Chart;
 
 /// A closed line of points (κ, ψ), or a piece of one.
@@ -16,8 +15,8 @@ type Ring = Vec<[f64; 2]>;
 ///
 /// The coordinates are (κ, ψ).
 #[must_use]
-pub fn geojson(verified: &VerifiedAtlas) -> FeatureCollection {
-    document_geojson(&verified.atlas, &Document::new(verified))
+pub fn geojson(atlas: &Atlas) -> FeatureCollection {
+    document_geojson(atlas, &Document::new(atlas))
 }
 
 /// As [`geojson()`], of an atlas with its document.
@@ -64,7 +63,7 @@ fn feature(geometry: Geometry, properties: serde_json::Value) -> Feature {
 /// A region as one polygon with holes, or as several polygons that touch at vertices.
 fn polygons(atlas: &Atlas, lines: &[Ring], region: usize) -> Geometry {
     let rings = atlas.regions.outlines(region).into_iter();
-    let rings = rings.map(|outline| ring(&atlas.chart, lines, &outline));
+    let rings = rings.map(|outline| ring(atlas.plane.chart(), lines, &outline));
     let (around, holes): (Vec<Ring>, Vec<Ring>) = rings.partition(|ring| area(ring) > 0.0);
     let single = around.len() == 1;
     let mut polygons: Vec<Vec<Ring>> = around.into_iter().map(|ring| vec![ring]).collect();

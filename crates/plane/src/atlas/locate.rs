@@ -1,18 +1,21 @@
 //! Points looked up in an atlas.
 
-use stickslip_model::{Contact, Engine};
+use std::fmt;
+
+use stickslip_model::Engine;
 use stickslip_tracer::{Location, Point, Window};
 
-use super::frame::Frame;
 use super::regions::Atlas;
 use crate::chart::Chart;
+use crate::range::Range;
 
 /// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Located {
     /// The index of the region, or the reason why the region is not known.
     pub region: Result<usize, Unlocated>,
-    /// Distance in ψ to the nearest boundary at the same κ; `None` if there is no such boundary.
+    /// Distance in the second parameter to the nearest boundary at the same first one; `None` if
+    /// there is no such boundary.
     pub distance: Option<f64>,
 }
 
@@ -22,78 +25,86 @@ pub enum Unlocated {
     /// The point is within a boundary's error, and its collision has the switches of no region
     /// there.
     #[error(
-        "kappa = {kappa:?}, psi = {psi:?} is on boundary {boundary} within its error, and its \
-         collision has other switches than the regions there"
+        "{place} is on boundary {boundary} within its error, and its collision has other switches \
+         than the regions there"
     )]
     OnBoundary {
-        /// κ of the point.
-        kappa: f64,
-        /// ψ of the point.
-        psi: f64,
+        /// The point.
+        place: ParameterPlace,
         /// The index of the boundary.
         boundary: usize,
     },
     /// The point is on the edge of the window, and its collision has other switches than the region
     /// there: a boundary runs along the edge.
     #[error(
-        "kappa = {kappa:?}, psi = {psi:?} is on the edge of the window, and its collision has other \
-         switches than the region there"
+        "{place} is on the edge of the window, and its collision has other switches than the region \
+         there"
     )]
     OnEdge {
-        /// κ of the point.
-        kappa: f64,
-        /// ψ of the point.
-        psi: f64,
+        /// The point.
+        place: ParameterPlace,
     },
     /// The point is outside the window.
     #[error(
-        "kappa = {kappa:?}, psi = {psi:?} is outside the window of the atlas, kappa {:?} to {:?}, \
-         psi {:?} to {:?}",
-        window[0][0], window[0][1], window[1][0], window[1][1]
+        "{place} is outside the window of the atlas, {} {:?} to {:?}, {} {:?} to {:?}",
+        place.names[0], window[0].low, window[0].high, place.names[1], window[1].low, window[1].high
     )]
     Outside {
-        /// κ of the point.
-        kappa: f64,
-        /// ψ of the point.
-        psi: f64,
-        /// The window of the atlas: the ends of κ, and the ends of ψ.
-        window: [[f64; 2]; 2],
+        /// The point.
+        place: ParameterPlace,
+        /// The window of the atlas.
+        window: [Range; 2],
     },
 }
 
+/// A place in the window of an atlas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterPlace {
+    /// The names of both parameters.
+    pub names: [&'static str; 2],
+    /// The values of both parameters.
+    pub values: [f64; 2],
+}
+
+impl fmt::Display for ParameterPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { names, values } = self;
+        write!(f, "{} = {:?}, {} = {:?}", names[0], values[0], names[1], values[1])
+    }
+}
+
 impl Atlas {
-    /// Looks up a collision by its κ and ψ. Within the error of a boundary, the collision itself
-    /// decides, computed by the best engine for it. Damping and law are those of the atlas,
-    /// whatever those of `contact` are.
+    /// Looks up a collision by its two parameters: κ and ψ, or the velocities. Within the error of a
+    /// boundary, the collision itself decides, computed by the best engine for it.
     #[must_use]
-    pub fn locate(&self, contact: &Contact) -> Located {
-        let (kappa, psi) = (contact.kappa(), contact.psi());
-        let point = self.chart.point(kappa, psi);
+    pub fn locate(&self, parameters: [f64; 2]) -> Located {
+        let [x, y] = parameters;
+        let point = self.plane.point(x, y);
+        let place = ParameterPlace { names: self.plane.names(), values: parameters };
         let region = match self.regions.locate(&point) {
             Location::Region(region) if !self.is_at_edge(&point) => Ok(region),
             // A boundary may lie on the edge of the window.
-            Location::Region(region) => match self.itinerary_of(contact) {
+            Location::Region(region) => match self.itinerary_at(parameters) {
                 Some(itinerary) if itinerary != self.itinerary(region) => {
-                    Err(Unlocated::OnEdge { kappa, psi })
+                    Err(Unlocated::OnEdge { place })
                 }
                 _ => Ok(region),
             },
             Location::OnBoundary { curve: boundary, .. } => {
-                let region = self.decided(boundary, contact);
-                region.ok_or(Unlocated::OnBoundary { kappa, psi, boundary })
+                let region = self.decided(boundary, parameters);
+                region.ok_or(Unlocated::OnBoundary { place, boundary })
             }
             Location::Outside => {
-                let window = [self.frame.kappa, self.frame.psi].map(|side| [side.low, side.high]);
-                Err(Unlocated::Outside { kappa, psi, window })
+                Err(Unlocated::Outside { place, window: self.plane.sheet().sides })
             }
         };
         // ψ₂ − ψ₁ = (1 + ψ₁)(e^(y₂ − y₁) − 1): further up than down for equal distances in y.
-        let Chart { spread, height, psi: from, .. } = self.chart;
+        let Chart { spread, height, psi: from, .. } = *self.plane.chart();
         let [below, above] = self.regions.vertical_distances(&point);
         let below = below.map(|distance| -(-height * distance).exp_m1());
         let above = above.map(|distance| (height * distance).exp_m1());
         let nearest = [below, above].into_iter().flatten().reduce(f64::min);
-        Located { region, distance: nearest.map(|part| (spread + psi - from) * part) }
+        Located { region, distance: nearest.map(|part| (spread + y - from) * part) }
     }
 
     /// Whether a point is closer to the edge of the window than boundaries are known.
@@ -103,20 +114,17 @@ impl Atlas {
         (point - low).min() <= resolution || (high - point).min() <= resolution
     }
 
-    /// The itinerary of the collision itself, with the damping of the atlas.
-    fn itinerary_of(&self, contact: &Contact) -> Option<String> {
-        let Frame { damping, law, tangential_damping, .. } = self.frame;
-        let contact = Contact::new(contact.kappa(), contact.psi(), damping)
-            .and_then(|contact| contact.with_law(law, tangential_damping))
-            .ok()?;
+    /// The itinerary of the collision itself.
+    fn itinerary_at(&self, parameters: [f64; 2]) -> Option<String> {
+        let contact = self.plane.contact_at(parameters).ok()?;
         let (collision, _) = Engine::Auto.collide(contact).ok()?;
         Some(collision.itinerary())
     }
 
     /// The region beside `boundary`, or beside one that meets it, in which collisions have the
     /// switches of this one.
-    fn decided(&self, boundary: usize, contact: &Contact) -> Option<usize> {
-        let itinerary = self.itinerary_of(contact)?;
+    fn decided(&self, boundary: usize, parameters: [f64; 2]) -> Option<usize> {
+        let itinerary = self.itinerary_at(parameters)?;
         let curves = self.regions.curves();
         let ends = |curve: usize| curves[curve].ends.into_iter().flatten();
         let meeting = (0..curves.len())

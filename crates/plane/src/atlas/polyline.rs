@@ -12,7 +12,7 @@ impl Atlas {
     pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {
         let extent = self.regions.window().extent();
         let curves = self.regions.curves().iter();
-        curves.map(|curve| polyline(&self.chart, &extent, curve)).collect()
+        curves.map(|curve| polyline(self.plane.chart(), &extent, curve)).collect()
     }
 }
 

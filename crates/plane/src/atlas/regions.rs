@@ -1,50 +1,76 @@
 //! The atlas itself: a window, its boundaries, and the regions between them.
 
-use std::collections::BTreeMap;
-
-use stickslip_tracer::Subdivision;
+use stickslip_tracer::{Extremum, Names, Point, Subdivision};
 
 use super::boundary::BoundaryKind;
-use super::frame::Frame;
-use crate::chart::Chart;
+use super::frame::{Frame, RatioRange};
+use super::verification::VerificationReport;
+use crate::family::CollisionPlane;
 
 /// A window divided by its boundaries into regions, which are labelled by itineraries.
 pub type Regions = Subdivision<String, BoundaryKind>;
 
-/// Every boundary in a window, and the regions between them.
+/// Every boundary in a window, the regions between them, and what their verification found.
 #[derive(Clone, Debug)]
 pub struct Atlas {
-    /// The window.
-    pub frame: Frame,
-    /// The traced coordinates, in which the boundaries are cubics.
-    pub chart: Chart,
-    /// Accuracy of the boundaries in ψ.
+    /// The collisions, and the traced coordinates, in which the boundaries are cubics.
+    pub plane: CollisionPlane,
+    /// The impact ratios from which ψ was reduced, if the window was given in impact ratios.
+    pub ratio: Option<RatioRange>,
+    /// Accuracy of the boundaries in the second parameter.
     pub tolerance: f64,
     /// Boundaries, vertices and regions.
     pub regions: Regions,
-    /// Itineraries of the regions that no boundary touches, by the index of the region.
-    pub unbounded: BTreeMap<usize, String>,
+    /// The points at which boundaries turn back in one of the parameters.
+    pub extrema: Vec<Extremum>,
+    /// What the verification found.
+    pub report: VerificationReport,
 }
 
 impl Atlas {
-    /// The itinerary of a region: one character per phase, `+` and `-` for slip, `o` for stick.
+    /// The itinerary of a region: one character per phase, `+` and `-` for slip, `o` for stick. It
+    /// is empty if it is not known.
     ///
     /// # Panics
     /// If there is no region with this index.
     #[must_use]
     pub fn itinerary(&self, region: usize) -> &str {
-        itinerary_in(&self.regions, &self.unbounded, region)
+        self.regions.regions()[region].label.as_deref().unwrap_or_default()
+    }
+
+    /// The window, and what all its collisions have in common.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        Frame { ratio: self.ratio, ..Frame::of(&self.plane) }
+    }
+
+    /// What speaks against the atlas; `None` if nothing does.
+    #[must_use]
+    pub fn objection(&self) -> Option<String> {
+        self.report.objection()
     }
 }
 
-/// The itinerary of a region, with those of the regions that no boundary touches.
-pub(super) fn itinerary_in<'a>(
-    regions: &'a Regions,
-    unbounded: &'a BTreeMap<usize, String>,
-    region: usize,
-) -> &'a str {
-    let own = regions.regions()[region].label.as_ref();
-    own.or_else(|| unbounded.get(&region)).map_or("", String::as_str)
+impl Names<String, BoundaryKind> for CollisionPlane {
+    fn axes(&self) -> [&str; 2] {
+        self.names()
+    }
+
+    fn parameters(&self, point: &Point) -> [f64; 2] {
+        self.chart().parameters(point)
+    }
+
+    fn point(&self, [x, y]: [f64; 2]) -> Point {
+        self.chart().point(x, y)
+    }
+
+    fn text(&self, label: &String) -> String {
+        label.clone()
+    }
+
+    fn kind(&self, margin: &BoundaryKind) -> &'static str {
+        margin.name()
+    }
 }
 
 /// The number of switches of an itinerary, which has one character per phase.

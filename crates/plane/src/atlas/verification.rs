@@ -1,16 +1,9 @@
-//! The verification of an atlas: collisions are compared with its regions.
+//! What the comparison of an atlas with collisions found.
 
-use rayon::prelude::*;
-use stickslip_model::Collider;
-use stickslip_tracer::{
-    Found, Location, Origin, Point, Reason, Unresolved, Verification, VerifyOptions, Vertex,
-    verify_unless_cancelled,
-};
+use stickslip_tracer::{Atlas, Doubts, Origin, Verification, VerifyOptions};
 
-use super::error::{AtlasError, LabelError};
-use super::regions::Regions;
+use super::boundary::BoundaryKind;
 use crate::family::CollisionPlane;
-use crate::progress::Watch;
 
 /// What the verification of an atlas found, in the layout of the atlas file.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,90 +71,31 @@ pub struct MismatchFields {
     pub near_boundary: bool,
 }
 
-/// Compares regions of a plane with collisions at the points of a round, in parallel; `None` if
-/// `watch` cancels.
-///
-/// `unresolved` is what the tracer left open. Besides the report, the result has pairs of places
-/// between which a boundary is missing.
-///
-/// # Errors
-/// [`AtlasError::Verify`]: the distances from boundaries are not in order. This would be a defect
-/// of this module.
-pub(super) fn verify(
-    plane: &CollisionPlane,
-    (regions, unresolved): (Regions, Vec<String>),
-    round: u64,
-    watch: &Watch<'_>,
-) -> Result<Option<Found<(Regions, VerificationReport)>>, AtlasError> {
-    let options = options(&regions, round);
-    let labels = |portion: &[Point]| -> Vec<_> {
-        portion.par_iter().map(|point| itinerary(plane, point)).collect()
-    };
-    let labels = |points: &[Point]| watch.in_portions(points, labels);
-    let Some(found) = verify_unless_cancelled(&regions, &options, labels)? else {
-        return Ok(None);
-    };
-    let brackets = found.brackets();
-    let report = VerificationReport::new(plane, &options, &regions, unresolved, found);
-    Ok(Some(Found { result: (regions, report), brackets }))
-}
-
-/// The points of a round.
-fn options(regions: &Regions, round: u64) -> VerifyOptions {
-    let nearest = 10.0 * regions.tolerance();
-    let farthest = nearest.max(1e-3 * regions.window().extent().min());
-    VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round }
-}
-
 impl VerificationReport {
-    /// The report of regions of which none has been compared with collisions.
-    pub(super) fn untried(
-        plane: &CollisionPlane,
-        regions: &Regions,
-        unresolved: Vec<String>,
-    ) -> Self {
-        let options = options(regions, 1);
-        Self::new(plane, &options, regions, unresolved, Verification::untried(regions))
-    }
-
-    /// The report of a verification.
-    fn new(
+    /// The report of an atlas that was verified with these options.
+    pub(super) fn new(
         plane: &CollisionPlane,
         options: &VerifyOptions,
-        regions: &Regions,
-        mut unresolved: Vec<String>,
-        verification: Verification<String, LabelError>,
+        atlas: &Atlas<String, BoundaryKind>,
     ) -> Self {
-        let mut undecided = 0;
-        for open in &verification.unverified {
-            let [kappa, psi] = scaled(plane, &open.checkpoint.point);
-            let what = match &open.reason {
-                Reason::Location(Location::OnBoundary { .. }) => {
-                    undecided += 1;
-                    continue;
-                }
-                Reason::Location(_) => "it lies in no region".to_owned(),
-                Reason::NoLabel { region } => format!("region {region} has no known switches"),
-                Reason::Run(error) => error.to_string(),
-            };
-            unresolved.push(format!("kappa = {kappa:?}, psi = {psi:?}: {what}"));
-        }
-        let agrees = verification.agrees() && unresolved.is_empty();
-        let findings = verification.standing(regions).map(ToString::to_string).collect();
-        let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
-        let mismatches = mismatches.into_iter().map(|mismatch| {
-            let [kappa, psi] = scaled(plane, &mismatch.checkpoint.point);
+        let doubts = atlas.doubts(plane).unwrap_or_default();
+        let cancelled = (!atlas.is_finished()).then(|| "cancelled before the end".to_owned());
+        let unresolved = cancelled.into_iter().chain(doubts.unresolved).chain(doubts.failed);
+        let Verification { euler, mismatches, tried, unverified, untried_curves, .. } =
+            &atlas.verification;
+        let mismatches = mismatches.iter().map(|mismatch| {
+            let contact = plane.contact_or_any(&mismatch.checkpoint.point);
             MismatchFields {
-                kappa,
-                psi,
+                kappa: contact.kappa(),
+                psi: contact.psi(),
                 region: mismatch.region,
-                expected: mismatch.expected,
-                found: mismatch.found,
+                expected: mismatch.expected.clone(),
+                found: mismatch.found.clone(),
                 near_boundary: matches!(mismatch.checkpoint.origin, Origin::Near { .. }),
             }
         });
         Self {
-            agrees,
+            agrees: atlas.agrees(),
             method: "dop853".to_owned(),
             euler: EulerFields {
                 vertices: euler.vertices,
@@ -173,81 +107,30 @@ impl VerificationReport {
             random_points: options.random_points,
             near_points: options.near_points,
             tried: tried.iter().sum(),
-            undecided,
+            undecided: unverified.len() - atlas.verification.failed().count(),
             mismatches: mismatches.collect(),
-            unresolved,
-            findings,
-            untried_boundaries: untried_curves,
-            share_tried: verification.tried_area,
-            share_wrong_bound: verification.wrong_area_bound,
+            unresolved: unresolved.collect(),
+            findings: doubts.findings,
+            untried_boundaries: untried_curves.clone(),
+            share_tried: atlas.verification.tried_area,
+            share_wrong_bound: atlas.verification.wrong_area_bound,
         }
     }
 
     /// A line that says what speaks against the atlas; `None` if nothing does.
     #[must_use]
     pub fn objection(&self) -> Option<String> {
-        if self.agrees {
-            return None;
-        }
-        let mismatch = self.mismatches.first().map(|mismatch| {
+        let mismatch = |mismatch: &MismatchFields| {
             let MismatchFields { kappa, psi, region, expected, found, .. } = mismatch;
-            format!("kappa = {kappa:?}, psi = {psi:?} has {found}, region {region} {expected}")
-        });
-        let first = mismatch.iter().chain(&self.unresolved).chain(&self.findings).next();
-        Some(format!(
-            "{} mismatches, {} unresolved, {} findings; the first: {}",
-            self.mismatches.len(),
-            self.unresolved.len(),
-            self.findings.len(),
-            first.map_or("Euler's formula does not hold", String::as_str)
-        ))
+            format!("kappa = {kappa:?}, psi = {psi:?} has {found}, its region {region} {expected}")
+        };
+        let doubts = Doubts {
+            finished: true,
+            mismatches: self.mismatches.iter().map(mismatch).collect(),
+            unresolved: self.unresolved.clone(),
+            findings: self.findings.clone(),
+            failed: Vec::new(),
+        };
+        (!self.agrees).then(|| doubts.objection())
     }
-}
-
-/// The itinerary of the collision at a traced point, by integration.
-///
-/// Without damping, boundaries are traced by the exact solution, with which integration has
-/// nothing in common.
-///
-/// # Errors
-/// [`LabelError`] says why the collision cannot be computed.
-pub(super) fn itinerary(plane: &CollisionPlane, point: &Point) -> Result<String, LabelError> {
-    Ok(Collider::deciding().collide(plane.contact(point)?)?.itinerary())
-}
-
-/// κ and ψ of the collision at a traced point.
-fn scaled(plane: &CollisionPlane, point: &Point) -> [f64; 2] {
-    let contact = plane.contact_or_any(point);
-    [contact.kappa(), contact.psi()]
-}
-
-/// What the tracer saw and could not explain, in sentences.
-pub(crate) fn unresolved<Label, Margin>(
-    plane: &CollisionPlane,
-    vertices: &[Vertex<Margin>],
-    unresolved: &[Unresolved<Label>],
-) -> Vec<String> {
-    let at = |point: &Point| {
-        let [kappa, psi] = scaled(plane, point);
-        format!("kappa = {kappa:?}, psi = {psi:?}")
-    };
-    let describe = |open: &Unresolved<Label>| match open {
-        Unresolved::Change { between: [one, two], .. } => {
-            format!("the switches change between {} and {} without a boundary", at(one), at(two))
-        }
-        Unresolved::Stalled { vertex } => {
-            let place = at(&vertices[*vertex].point);
-            format!("a boundary ends without a known cause at vertex {vertex}, {place}")
-        }
-        Unresolved::TooManyNodes { point } => {
-            format!("a boundary has too many points and was left at {}", at(point))
-        }
-        Unresolved::NoLength { point, .. } => {
-            format!("a boundary has no length at {}", at(point))
-        }
-        Unresolved::TooManyCurves { point } => {
-            format!("too many boundaries; the next one starts at {}", at(point))
-        }
-    };
-    unresolved.iter().map(describe).collect()
 }

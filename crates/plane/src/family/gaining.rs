@@ -9,10 +9,11 @@ use stickslip_tracer::{Family, FreeRun, Point};
 
 use super::general::{self, BEYOND_GUARDS, GeneralFamily};
 use super::{CollisionFamilyError, CollisionPlane};
+use crate::label::{CollisionEvent, CollisionLabel};
 
-/// What stands for a guard in the margin 1 − ε_t, and in the label where ε_t is above 1.
+/// What stands for a guard in the margin 1 − ε_t.
 const FORWARD: usize = BEYOND_GUARDS;
-/// What stands for a guard in the margin 1 + ε_t, and in the label where ε_t is below −1.
+/// What stands for a guard in the margin 1 + ε_t.
 const BACKWARD: usize = BEYOND_GUARDS + 1;
 
 /// Collisions with any law, with labels that say whether |ε_t| is above 1.
@@ -33,8 +34,9 @@ impl GainingFamily {
 }
 
 /// Whether collisions with this label have |ε_t| above 1.
-pub fn gains(label: &[usize]) -> bool {
-    matches!(label.last(), Some(&(FORWARD | BACKWARD)))
+pub fn gains(label: &[CollisionEvent]) -> bool {
+    use CollisionEvent::{GainsBackward, GainsForward};
+    matches!(label.last(), Some(GainsForward | GainsBackward))
 }
 
 /// ε_t where this margin vanishes, if that makes it 1 in size.
@@ -50,18 +52,18 @@ fn is_level(margin: &Margin) -> bool {
     level(margin).is_some()
 }
 
-fn with_level(mut label: Vec<usize>, eps_t: f64) -> Vec<usize> {
-    label.extend((eps_t > 1.0).then_some(FORWARD));
-    label.extend((eps_t < -1.0).then_some(BACKWARD));
+fn with_level(mut label: CollisionLabel, eps_t: f64) -> CollisionLabel {
+    label.extend((eps_t > 1.0).then_some(CollisionEvent::GainsForward));
+    label.extend((eps_t < -1.0).then_some(CollisionEvent::GainsBackward));
     label
 }
 
 impl Family for GainingFamily {
-    type Label = Vec<usize>;
+    type Label = CollisionLabel;
     type Margin = Margin;
     type Error = CollisionFamilyError;
 
-    fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionFamilyError> {
         let found = self.0.labelled(point);
         Ok(found.map_or_else(general::failed, |(label, eps_t)| with_level(label, eps_t)))
     }
@@ -88,7 +90,10 @@ impl Family for GainingFamily {
         is_level(margin) || general::is_sure(margin)
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
+    fn free_run(
+        &self,
+        point: &Point,
+    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
         let FreeRun { label, mut margins } = self.0.free_run(point);
         // Margins of the last phase have all exits.
         let is_whole = |exits: &Vec<Exit>| {

@@ -18,16 +18,13 @@ use stickslip_solver::{Dop853, Observer, Options, Outcome, Run, Start, State, Sw
 use stickslip_tracer::{FreeRun, Point};
 
 use super::CollisionPlane;
+use crate::label::{CollisionEvent, CollisionLabel};
 
-/// What a label has instead of [`END`] where slip goes on.
-const SLIPS_ON: usize = GUARDS;
-/// What is added to the place of a beginning in its list.
+/// What is added to the place of a beginning in its list, where it stands for a guard in the name
+/// of a margin.
 const BEGINS: usize = GUARDS + 1;
-/// The next two numbers say whether |ε_t| is above 1, in a family with such labels.
+/// The first number that stands for nothing in the names of margins.
 pub(super) const BEYOND_GUARDS: usize = BEGINS + BEGINNINGS.len();
-
-/// The only number in the label of a collision that cannot be computed.
-const FAILS: usize = BEYOND_GUARDS + 2;
 
 const BEGINNINGS: [Beginning; 4] =
     [Beginning::Stick, Beginning::Slip, Beginning::Reset, Beginning::Overturned];
@@ -85,7 +82,7 @@ impl GeneralFamily {
     }
 
     /// The label of the run at a point. Collisions that cannot be computed have one of their own.
-    pub(super) fn label(&self, point: &Point) -> Vec<usize> {
+    pub(super) fn label(&self, point: &Point) -> CollisionLabel {
         self.labelled(point).map_or_else(failed, |(label, _)| label)
     }
 
@@ -93,21 +90,22 @@ impl GeneralFamily {
     ///
     /// On a boundary, a last phase can be as short as rounding, so that its guards cannot be looked
     /// at. Then the run beside the point counts, at a distance far below the accuracy of traces.
-    pub(super) fn labelled(&self, point: &Point) -> Option<(Vec<usize>, f64)> {
+    pub(super) fn labelled(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
         let errors = Point::from(self.plane.sheet().errors());
         let beside = |(x, y)| self.labelled_at(&(point + errors.component_mul(&Point::new(x, y))));
         self.labelled_at(point).or_else(|| BESIDE.into_iter().find_map(beside))
     }
 
-    fn labelled_at(&self, point: &Point) -> Option<(Vec<usize>, f64)> {
+    fn labelled_at(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
         let (system, start) = started(self.system(point));
-        let mut fired = Fired(vec![code(system.beginning())]);
+        let mut fired = Fired(vec![CollisionEvent::Begins(system.beginning())]);
         let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired).ok()?;
         if found.outcome != (Outcome::EndedByGuard { guard: END }) {
             return None;
         }
         fired.0.pop();
-        fired.0.extend(system.last_slip(found.mode, &found.state).map(|(guard, _)| guard));
+        let last = system.last_slip(found.mode, &found.state);
+        fired.0.extend(last.and_then(|(guard, _)| CollisionEvent::fired(guard)));
         Some((fired.0, restitution(&system, &found.state)))
     }
 
@@ -125,7 +123,7 @@ impl GeneralFamily {
     }
 
     /// The label of the run at a point, and its margins.
-    pub(super) fn free_run(&self, point: &Point) -> FreeRun<Vec<usize>, Margin> {
+    pub(super) fn free_run(&self, point: &Point) -> FreeRun<CollisionLabel, Margin> {
         let (system, start) = started(self.system(point));
         // Where a last phase is as short as rounding, its guards cannot be looked at. The label is
         // known without them, and changes beside such a point need the margins of its neighbours.
@@ -161,7 +159,7 @@ impl GeneralFamily {
             let value = system.beginning_margins().into_iter().nth(derivative as usize)?;
             return Some((which.clone(), value?));
         };
-        let (system, start) = started(system.beginning_with(BEGINNINGS[begins.guard - BEGINS]));
+        let (system, start) = started(system.beginning_with(begun_with(begins)));
         let inner = Margin { exits: exits.to_vec(), ..which.clone() };
         // A run that cannot follow the itinerary has no such margin.
         let found = margin(Dop853, &system, start, self.span, &self.options, &inner).ok()??;
@@ -178,8 +176,8 @@ impl GeneralFamily {
 }
 
 /// The label of a collision that cannot be computed.
-pub fn failed() -> Vec<usize> {
-    vec![FAILS]
+pub fn failed() -> CollisionLabel {
+    vec![CollisionEvent::Fails]
 }
 
 /// Whether the itinerary changes where a margin vanishes, and not only the order of events.
@@ -203,7 +201,7 @@ fn started(system: GeneralContact) -> System {
 
 /// The label of a free run from its margins. The sign of a margin says whether slip goes on where
 /// attraction begins. A last slip that is shorter than rounding does not show in the margins.
-fn known_label(found: &Margins, system: &GeneralContact) -> Option<Vec<usize>> {
+fn known_label(found: &Margins, system: &GeneralContact) -> Option<CollisionLabel> {
     if found.outcome != (Outcome::EndedByGuard { guard: END }) {
         return None;
     }
@@ -211,14 +209,13 @@ fn known_label(found: &Margins, system: &GeneralContact) -> Option<Vec<usize>> {
         Place::Branch(exit) if exit.guard == END => exit.branch,
         _ => None,
     });
-    let mut label = vec![code(system.beginning())];
+    let mut label = vec![CollisionEvent::Begins(system.beginning())];
     let mut mode = system.first();
     for &guard in &found.fired {
         mode = system.after(mode, guard, slips_on == Some(true));
-        match guard {
-            CREST => {}
-            END => label.push(if slips_on? { SLIPS_ON } else { END }),
-            _ => label.push(guard),
+        match CollisionEvent::fired(guard) {
+            Some(CollisionEvent::End) if slips_on? => label.push(CollisionEvent::SlipsOn),
+            event => label.extend(event),
         }
     }
     (!system.lacks_slip(mode)).then_some(label)
@@ -258,29 +255,33 @@ fn corners(system: &GeneralContact, exits: &[Exit]) -> Vec<Margin> {
 }
 
 /// Records the guards that fire.
-struct Fired(Vec<usize>);
+struct Fired(CollisionLabel);
 
 impl Observer<Mode, STATE> for Fired {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
         let slips_on = event.guard == END && event.to.regime == Regime::Slip;
-        match event.guard {
-            CREST => {}
-            END if slips_on => self.0.push(SLIPS_ON),
-            guard => self.0.push(guard),
+        match CollisionEvent::fired(event.guard) {
+            Some(_) if slips_on => self.0.push(CollisionEvent::SlipsOn),
+            event => self.0.extend(event),
         }
     }
+}
+
+/// The beginning that stands for a guard in the first exit of a margin.
+pub fn begun_with(exit: &Exit) -> Beginning {
+    BEGINNINGS[exit.guard - BEGINS]
 }
 
 /// The phases of a collision that begins so, and whose guards fire in this order; `END` with
 /// whether slip goes on.
 pub fn phases(
     contact: &Contact,
-    begins: Option<usize>,
+    begins: Option<Beginning>,
     fired: impl Iterator<Item = (usize, bool)>,
 ) -> Vec<Mode> {
     let mut system = GeneralContact::new(*contact);
     if let Some(begins) = begins {
-        system = system.beginning_with(BEGINNINGS[begins - BEGINS]);
+        system = system.beginning_with(begins);
     }
     let mut phases = vec![system.first()];
     for (guard, slips) in fired {
@@ -291,16 +292,18 @@ pub fn phases(
 
 /// The itinerary of a collision with this label: one character per phase, and none where it is not
 /// known.
-pub fn itinerary(contact: &Contact, label: &[usize]) -> String {
+pub fn itinerary(contact: &Contact, label: &[CollisionEvent]) -> String {
     if label == failed() {
         return String::new();
     }
-    let fired = label.iter().skip(1).map(|&code| match code {
-        SLIPS_ON => (END, true),
-        guard => (guard, false),
+    let begins = label.iter().find_map(|event| match event {
+        CollisionEvent::Begins(begins) => Some(*begins),
+        _ => None,
     });
+    let fired =
+        label.iter().filter_map(|event| Some((event.guard()?, *event == CollisionEvent::SlipsOn)));
     let mut itinerary = String::new();
-    for phase in phases(contact, label.first().copied(), fired) {
+    for phase in phases(contact, begins, fired) {
         let character = match (phase.regime, phase.side) {
             (Regime::Stick, _) => 'o',
             (Regime::Slip, Side::Positive) => '+',

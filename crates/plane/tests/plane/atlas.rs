@@ -2,7 +2,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Collider, Contact, exact};
-use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
+use stickslip_plane::atlas::{
+    AtlasError, BoundaryKind, Frame, ParameterPlace, Unlocated, switch_count, trace,
+};
 use stickslip_plane::progress::{Progress, SILENT, Watch};
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::margin::{Exit, Hint, Margin, Place};
@@ -34,15 +36,15 @@ fn a_window_too_narrow_is_refused_with_its_size() {
 /// κ = 19.35 (three widths), around the cusp, and with κ and ψ over many decades.
 #[test]
 fn small_and_long_windows_are_right() {
-    let atlas = &crossing().atlas;
+    let atlas = crossing();
     let mut vertices = atlas.regions.vertices().iter();
     let crossing = vertices.find(|vertex| vertex.kind == VertexKind::Crossing).unwrap();
-    let [kappa, psi] = atlas.chart.parameters(&crossing.point);
+    let [kappa, psi] = atlas.plane.parameters(&crossing.point);
     for width in [1e-3, 1e-5, 5e-7] {
         let around = |value: f64| (value * (1.0 - width), value * (1.0 + width));
         let verified = traced(frame(around(kappa), around(psi)));
-        assert!(verified.report.agrees, "{width:e}: {:?}", verified.report.objection());
-        let regions = &verified.atlas.regions;
+        assert!(verified.report.agrees, "{width:e}: {:?}", verified.objection());
+        let regions = &verified.regions;
         assert_eq!((regions.curves().len(), regions.regions().len()), (4, 4), "{width:e}");
     }
     let long = traced(frame((0.01, 10.0), (1e-4, 3.0)));
@@ -62,8 +64,8 @@ fn edges_may_pass_through_the_cusp() {
         ((1.56845, 1.56847), (1.0, 1.001)),
     ] {
         let verified = traced(frame(kappa, psi));
-        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
-        assert_eq!(verified.atlas.regions.regions().len(), 2, "{kappa:?}, {psi:?}");
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.objection());
+        assert_eq!(verified.regions.regions().len(), 2, "{kappa:?}, {psi:?}");
     }
 }
 
@@ -73,8 +75,8 @@ fn edges_may_pass_through_the_cusp() {
 fn thin_regions_beside_the_cusp_are_there() {
     for kappa in [(1.5683, 1.5687), (1.5684, 1.5686)] {
         let verified = traced(frame(kappa, (0.9999, 1.0)));
-        assert!(verified.report.agrees, "{kappa:?}: {:?}", verified.report.objection());
-        let regions = &verified.atlas.regions;
+        assert!(verified.report.agrees, "{kappa:?}: {:?}", verified.objection());
+        let regions = &verified.regions;
         assert!(matches!(regions.findings(), [Finding::Thin { .. }]), "{:?}", regions.findings());
         assert_eq!(regions.regions().len(), 2);
     }
@@ -91,8 +93,8 @@ fn a_vertex_may_lie_on_the_edge() {
         ((77.52677359820228, 111.10436016173465), (0.7977300441825201, 0.7977390307265566)),
     ] {
         let verified = traced(frame(kappa, psi));
-        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
-        assert_eq!(verified.atlas.regions.regions().len(), 3, "{kappa:?}, {psi:?}");
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.objection());
+        assert_eq!(verified.regions.regions().len(), 3, "{kappa:?}, {psi:?}");
     }
 }
 
@@ -104,7 +106,7 @@ fn a_window_with_a_doubt_is_traced_in_another_way() {
     let hooke = frame((1.0, 1.000057293278027), (0.9999954665433843, 1.0));
     for window in [paper, with_law("gran/hooke/history", 0.0, hooke)] {
         let verified = traced(window);
-        assert!(verified.report.agrees, "{window:?}: {:?}", verified.report.objection());
+        assert!(verified.report.agrees, "{window:?}: {:?}", verified.objection());
     }
 }
 
@@ -154,8 +156,8 @@ fn damped_windows_at_a_vertex_are_right() {
         ),
     ] {
         let verified = traced(Frame { damping, ..frame(kappa, psi) });
-        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
-        assert_eq!(verified.atlas.regions.regions().len(), regions, "{kappa:?}, {psi:?}");
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.objection());
+        assert_eq!(verified.regions.regions().len(), regions, "{kappa:?}, {psi:?}");
     }
 }
 
@@ -165,8 +167,8 @@ fn boundaries_may_cross_in_a_corner() {
     let (kappa, psi) =
         ((73.34140315565118, 73.39524206444307), (0.15321256238480244, 0.15403275473412606));
     let verified = traced(frame(kappa, psi));
-    assert!(verified.report.agrees, "{:?}", verified.report.objection());
-    assert_eq!(verified.atlas.regions.regions().len(), 3);
+    assert!(verified.report.agrees, "{:?}", verified.objection());
+    assert_eq!(verified.regions.regions().len(), 3);
 }
 
 /// With little damping and small ψ: grazes just before the end of contact, and the place where one
@@ -175,8 +177,8 @@ fn boundaries_may_cross_in_a_corner() {
 fn a_window_of_late_grazes_is_right() {
     let window = Frame { damping: 5.4e-5, ..frame((77.0, 77.4), (8e-5, 1.2e-4)) };
     let verified = traced(window);
-    assert!(verified.report.agrees, "{:?}", verified.report.objection());
-    assert!(verified.atlas.regions.regions().len() > 1);
+    assert!(verified.report.agrees, "{:?}", verified.objection());
+    assert!(verified.regions.regions().len() > 1);
 }
 
 /// Vertical boundaries end at κ = 0.5701, ψ = 2, a place that the boundary across them gives more
@@ -184,16 +186,16 @@ fn a_window_of_late_grazes_is_right() {
 #[test]
 fn a_vertex_that_is_found_twice_is_one() {
     let verified = traced(frame((0.1, 3.0), (1e-5, 3.0)));
-    assert!(verified.report.agrees, "{:?}", verified.report.objection());
-    assert_eq!(verified.atlas.regions.regions().len(), 5);
+    assert!(verified.report.agrees, "{:?}", verified.objection());
+    assert_eq!(verified.regions.regions().len(), 5);
 }
 
 /// Three boundaries cross 2.5e-7 above the lower edge, and a region below is smaller than that.
 #[test]
 fn a_region_between_a_vertex_and_the_edge_beside_it_is_there() {
     let verified = traced(Frame { damping: 5.6806e-4, ..frame((0.5, 30.0), (0.05, 2.0)) });
-    assert!(verified.report.agrees, "{:?}", verified.report.objection());
-    assert_eq!(verified.atlas.regions.regions().len(), 16);
+    assert!(verified.report.agrees, "{:?}", verified.objection());
+    assert_eq!(verified.regions.regions().len(), 16);
 }
 
 #[test]
@@ -238,14 +240,14 @@ fn a_window_that_cannot_be_verified_is_refused_first() {
 fn regions_have_the_switches_of_their_collisions() {
     let verified = crossing();
     assert!(verified.report.agrees, "{:?}", verified.report);
-    assert_eq!(verified.report.objection(), None);
-    let atlas = &verified.atlas;
+    assert_eq!(verified.objection(), None);
+    let atlas = &verified;
     assert_eq!(atlas.regions.regions().len(), 4);
     let mut seen = [false; 4];
     for step in 0..100 {
         let (column, row) = (step % 10, step / 10);
         let (kappa, psi) = (18.15 + 0.3 * f64::from(column), 0.555 + 0.01 * f64::from(row));
-        let located = atlas.locate(&contact(kappa, psi));
+        let located = atlas.locate([kappa, psi]);
         let region = located.region.unwrap();
         seen[region] = true;
         let collision = exact::collide(contact(kappa, psi)).unwrap();
@@ -264,21 +266,21 @@ fn regions_have_the_switches_of_their_collisions() {
 fn damped_boundaries_have_the_integrators_switches_beside_them() {
     let damping = 0.1;
     let verified = traced(Frame { damping, ..frame((0.7, 1.9), (0.1, 1.1)) });
-    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
-    let atlas = &verified.atlas;
+    assert_eq!(verified.objection(), None, "{:?}", verified.report);
+    let atlas = &verified;
     assert!(atlas.regions.regions().len() > 4);
     let damped = |kappa, psi| Contact::new(kappa, psi, damping).unwrap();
     for step in 0..100 {
         let (column, row) = (step % 10, step / 10);
         let contact = damped(0.76 + 0.12 * f64::from(column), 0.15 + 0.1 * f64::from(row));
-        let region = atlas.locate(&contact).region.unwrap();
+        let region = atlas.locate([contact.kappa(), contact.psi()]).region.unwrap();
         let collision = Collider::default().collide(contact).unwrap();
         assert_eq!(atlas.itinerary(region), collision.itinerary(), "{contact:?}");
     }
     let contact_time = exact::collide(damped(1.0, 0.1)).unwrap().contact_time;
     let kappa = (std::f64::consts::PI / contact_time).powi(2);
     let beside = [1.0 - 1e-8, 1.0 + 1e-8].map(|part| {
-        let region = atlas.locate(&damped(kappa * part, 0.11)).region.unwrap();
+        let region = atlas.locate([kappa * part, 0.11]).region.unwrap();
         atlas.itinerary(region)
     });
     assert_eq!(beside, ["o+", "o-"]);
@@ -291,8 +293,8 @@ fn damped_boundaries_have_the_integrators_switches_beside_them() {
 fn damped_grazes_end_in_cusps() {
     let damping = 0.41;
     let verified = traced(Frame { damping, ..frame((1.3, 1.9), (0.6, 1.0)) });
-    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
-    let (regions, chart) = (&verified.atlas.regions, &verified.atlas.chart);
+    assert_eq!(verified.objection(), None, "{:?}", verified.report);
+    let (regions, chart) = (&verified.regions, verified.plane.chart());
     let ends_of = |kind: BoundaryKind| {
         let curves = regions.curves().iter().filter(move |curve| curve.margin == kind);
         curves.filter_map(|curve| curve.ends).flatten().collect::<Vec<_>>()
@@ -324,17 +326,17 @@ fn damped_grazes_end_in_cusps() {
 #[test]
 fn a_graze_at_the_end_is_known_by_all_its_boundaries() {
     let verified = traced(Frame { damping: 1.05, ..frame((1.2, 1.5), (0.1, 0.4)) });
-    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
+    assert_eq!(verified.objection(), None, "{:?}", verified.report);
     let verified = traced(Frame { damping: 1.05, ..frame((0.5, 30.0), (0.05, 2.0)) });
-    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
+    assert_eq!(verified.objection(), None, "{:?}", verified.report);
 }
 
 #[test]
 fn a_region_that_no_boundary_touches_has_an_itinerary() {
-    let atlas = &empty().atlas;
+    let atlas = empty();
     assert_eq!((atlas.regions.curves().len(), atlas.regions.regions().len()), (0, 1));
     assert_eq!(atlas.itinerary(0), "+");
-    let located = atlas.locate(&contact(5.5, 2.75));
+    let located = atlas.locate([5.5, 2.75]);
     assert_eq!((located.region, located.distance), (Ok(0), None));
     assert!(atlas.boundaries_at(5.5).is_empty() && atlas.polylines().is_empty());
 }
@@ -342,9 +344,11 @@ fn a_region_that_no_boundary_touches_has_an_itinerary() {
 #[test]
 fn a_point_outside_the_window_is_refused_with_the_window() {
     for (kappa, psi) in [(17.9, 0.6), (21.1, 0.6), (19.0, 0.54), (19.0, 0.66)] {
-        let located = crossing().atlas.locate(&contact(kappa, psi));
-        let window = [[18.0, 21.0], [0.55, 0.65]];
-        let expected = Unlocated::Outside { kappa, psi, window };
+        let located = crossing().locate([kappa, psi]);
+        let range = |low, high| Range { low, high };
+        let window = [range(18.0, 21.0), range(0.55, 0.65)];
+        let place = ParameterPlace { names: ["kappa", "psi"], values: [kappa, psi] };
+        let expected = Unlocated::Outside { place, window };
         assert_eq!(located.region, Err(expected));
         assert_eq!(
             expected.to_string(),
@@ -358,17 +362,17 @@ fn a_point_outside_the_window_is_refused_with_the_window() {
 
 #[test]
 fn a_point_on_a_boundary_is_decided_by_its_collision() {
-    let atlas = &crossing().atlas;
+    let atlas = crossing();
     for psi in atlas.boundaries_at(20.0) {
-        let place = atlas.chart.point(20.0, psi);
+        let place = atlas.plane.point(20.0, psi);
         assert!(matches!(atlas.regions.locate(&place), Location::OnBoundary { .. }));
-        assert!(atlas.locate(&contact(20.0, psi)).distance.unwrap() < 1e-12);
+        assert!(atlas.locate([20.0, psi]).distance.unwrap() < 1e-12);
         // Within the error of the boundary and beyond it, on either side.
         let mut found = Vec::new();
         for away in [-1e-6, -1e-11, -1e-13, 0.0, 1e-13, 1e-11, 1e-6] {
             let contact = contact(20.0, psi + away);
             let itinerary = exact::collide(contact).unwrap().itinerary();
-            let region = atlas.locate(&contact).region.unwrap();
+            let region = atlas.locate([contact.kappa(), contact.psi()]).region.unwrap();
             assert_eq!(atlas.itinerary(region), itinerary, "{away:e}");
             found.push(itinerary);
         }
@@ -380,13 +384,13 @@ fn a_point_on_a_boundary_is_decided_by_its_collision() {
 
 #[test]
 fn boundaries_have_kinds_and_lines_through_their_points() {
-    let atlas = &crossing().atlas;
+    let atlas = crossing();
     let lines = atlas.polylines();
     assert_eq!(lines.len(), atlas.regions.curves().len());
     for (curve, line) in atlas.regions.curves().iter().zip(&lines) {
         assert!(matches!(curve.margin, BoundaryKind::EndOfContact | BoundaryKind::StickGraze));
         for node in &curve.nodes {
-            let [kappa, psi] = atlas.chart.parameters(&node.point);
+            let [kappa, psi] = atlas.plane.parameters(&node.point);
             let near = |point: &[f64; 2]| (point[0] - kappa).hypot(point[1] - psi) < 1e-12;
             assert!(line.iter().any(near));
         }
@@ -421,7 +425,7 @@ fn a_damped_window_is_traced_by_integration() {
     let frame = Frame::new(Range { low: 10.0, high: 11.0 }, Range { low: 0.9, high: 1.0 }, 0.05);
     let verified = traced(frame);
     assert!(verified.report.agrees, "{:?}", verified.report);
-    let itinerary = verified.atlas.itinerary(0);
+    let itinerary = verified.itinerary(0);
     assert_eq!(switch_count(itinerary) % 2, 1, "a damped contact begins in stick: {itinerary}");
 }
 
@@ -433,9 +437,9 @@ fn a_region_thinner_than_a_cell_is_found() {
     let frame = Frame::new(kappa, Range { low: 0.5, high: 1.5 }, 0.028_228_728_691_607_554);
     let verified = traced(frame);
     assert!(verified.report.agrees, "{:?}", verified.report);
-    let atlas = verified.atlas;
+    let atlas = verified;
     let thin = Contact::new(1.5535, 0.9791, frame.damping).unwrap();
-    let region = atlas.locate(&thin).region.unwrap();
+    let region = atlas.locate([thin.kappa(), thin.psi()]).region.unwrap();
     assert_eq!(atlas.itinerary(region), "o+o+o-");
     assert_eq!(Collider::deciding().collide(thin).unwrap().itinerary(), "o+o+o-");
 }
@@ -461,7 +465,7 @@ fn threads_do_not_change_an_atlas_and_cancelling_shows() {
     for threads in [1, 4] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let verified = pool.install(|| trace(frame, tolerance, SILENT)).unwrap();
-        assert_eq!(verified.atlas.regions.curves(), crossing().atlas.regions.curves());
+        assert_eq!(verified.regions.curves(), crossing().regions.curves());
         assert_eq!(verified.report, crossing().report, "{threads} threads");
     }
     for last in [0, 30, 300, 3000] {
@@ -479,8 +483,8 @@ fn threads_do_not_change_an_atlas_and_cancelling_shows() {
 #[test]
 fn grazes_at_the_very_end_of_contact_are_traced() {
     let verified = traced(frame((0.9, 1.0), (1e-6, 2e-6)));
-    assert_eq!(verified.report.objection(), None);
-    let regions = &verified.atlas.regions;
+    assert_eq!(verified.objection(), None);
+    let regions = &verified.regions;
     assert_eq!((regions.curves().len(), regions.regions().len()), (1, 2));
 }
 
@@ -489,7 +493,7 @@ fn grazes_at_the_very_end_of_contact_are_traced() {
 #[test]
 fn narrow_regions_across_a_flat_window_are_found() {
     let verified = traced(frame((600.0, 1100.0), (0.0066122, 0.00661220165)));
-    assert_eq!(verified.report.objection(), None);
-    let regions = &verified.atlas.regions;
+    assert_eq!(verified.objection(), None);
+    let regions = &verified.regions;
     assert_eq!((regions.curves().len(), regions.regions().len()), (15, 16));
 }

@@ -7,7 +7,7 @@ use crate::windows::crossing;
 fn regions_boundaries_and_vertices_are_features() {
     let verified = crossing();
     let collection = geojson(verified);
-    let regions = &verified.atlas.regions;
+    let regions = &verified.regions;
     let kinds: Vec<_> = collection
         .features
         .iter()

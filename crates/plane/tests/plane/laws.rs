@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_model::{Damping, End, Law, Normal, presets};
-use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
+use stickslip_plane::atlas::{Atlas, BoundaryKind, Frame};
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};
@@ -17,7 +17,7 @@ pub fn with_law(name: &str, damping: f64, window: Frame) -> Frame {
 
 /// No collision has other switches than its region. The tracer may leave a change open where a
 /// boundary that runs straight up meets the edge of the window.
-fn agrees_with_collisions(verified: &VerifiedAtlas) {
+fn agrees_with_collisions(verified: &Atlas) {
     let report = &verified.report;
     assert!(report.mismatches.is_empty() && report.findings.is_empty(), "{report:?}");
     assert!(report.unresolved.len() <= 1 && report.share_tried > 0.999, "{report:?}");
@@ -30,7 +30,7 @@ fn agrees_with_collisions(verified: &VerifiedAtlas) {
 fn a_linear_contact_has_its_closed_forms() {
     let verified = traced(with_law("gran/hooke/history", 0.0, frame((0.7, 3.5), (0.2, 1.9))));
     agrees_with_collisions(&verified);
-    let atlas = &verified.atlas;
+    let atlas = &verified;
     for kappa in [0.8, 0.9] {
         let found = atlas.boundaries_at(kappa);
         assert_eq!(found.len(), 1, "{found:?}");
@@ -46,7 +46,7 @@ fn a_linear_contact_has_its_closed_forms() {
     let upright = curves.filter(|curve| curve.margin == BoundaryKind::EndOfContact);
     let upright: Vec<f64> = upright
         .flat_map(|curve| &curve.nodes)
-        .map(|node| atlas.chart.parameters(&node.point))
+        .map(|node| atlas.plane.parameters(&node.point))
         .filter(|[kappa, psi]| kappa * psi < 0.99)
         .map(|[kappa, _]| kappa)
         .collect();
@@ -57,8 +57,7 @@ fn a_linear_contact_has_its_closed_forms() {
 }
 
 fn region(atlas: &stickslip_plane::atlas::Atlas, kappa: f64, psi: f64) -> usize {
-    let contact = stickslip_model::Contact::new(kappa, psi, 0.0).unwrap();
-    atlas.locate(&contact).region.unwrap()
+    atlas.locate([kappa, psi]).region.unwrap()
 }
 
 /// With Mindlin's stiffness and force history a contact starts in slip above (2/3)κψ = 1.
@@ -68,7 +67,7 @@ fn a_force_history_starts_in_slip() {
     let verified = traced(with_law(name, 0.0, frame((1.0, 2.0), (0.5, 2.0))));
     agrees_with_collisions(&verified);
     for kappa in [1.1, 1.5, 1.9] {
-        let found = verified.atlas.boundaries_at(kappa);
+        let found = verified.boundaries_at(kappa);
         let start = found.iter().any(|psi| (psi - 1.5 / kappa).abs() < 1e-9);
         assert!(start, "{kappa}: {found:?}");
     }
@@ -95,7 +94,7 @@ fn a_narrow_window_of_another_law_may_have_runs_that_fail() {
     let window =
         frame((4.499997750000007, 4.500002250000007), (0.2222221111110953, 0.2222223333333175));
     let verified = traced(with_law("gran/hertz/history", 0.0, window));
-    assert!(verified.report.agrees, "{:?}", verified.report.objection());
+    assert!(verified.report.agrees, "{:?}", verified.objection());
 }
 
 /// Where attraction is limited, damped contacts are divided completely too.
@@ -106,7 +105,7 @@ fn a_limited_contact_is_traced_with_damping() {
     let window = Frame { tangential_damping: 0.5, ..frame((1.0, 8.0), (0.2, 1.5)) };
     let verified = traced(with_law(name, 0.2, window));
     assert!(verified.report.agrees, "{:?}", verified.report);
-    assert!(verified.atlas.regions.curves().len() > 3);
+    assert!(verified.regions.curves().len() > 3);
 }
 
 /// κ for which a linear contact that sticks until it attracts has no tangential force there:
@@ -124,12 +123,12 @@ fn an_attracting_contact_is_traced_with_damping() {
     let window = frame((1.05, 1.2), (0.6, 0.7));
     let verified = traced(with_law("gran/hooke/history", 0.2, window));
     assert!(verified.report.agrees, "{:?}", verified.report);
-    let atlas = &verified.atlas;
+    let atlas = &verified;
     let tails = atlas.regions.curves().iter();
     let tails = tails.filter(|curve| curve.margin == BoundaryKind::StartOfTail);
     let expected = kappa_without_force(1.0, 0.2);
     let upright = tails.flat_map(|curve| &curve.nodes).filter(|node| {
-        let [kappa, _] = atlas.chart.parameters(&node.point);
+        let [kappa, _] = atlas.plane.parameters(&node.point);
         (kappa - expected).abs() < 1e-9
     });
     assert!(upright.count() > 3, "{expected}");
@@ -142,7 +141,7 @@ fn boundaries_close_together_in_an_attracting_tail_are_told_apart() {
     let window = frame((29.0, 30.0), (1.37, 1.4));
     let verified = traced(with_law("gran/hooke/history", 0.2, window));
     assert!(verified.report.agrees, "{:?}", verified.report);
-    let atlas = &verified.atlas;
+    let atlas = &verified;
     let found = atlas.boundaries_at(29.99);
     let close = found.windows(2).filter(|pair| (1e-5..5e-5).contains(&(pair[1] - pair[0])));
     assert_eq!(close.count(), 1, "{found:?}");
@@ -154,7 +153,7 @@ fn boundaries_that_meet_just_beyond_the_edge_are_told_apart() {
     let window = Frame { tangential_damping: 0.5, ..frame((1.0, 5.0), (1.9, 2.8)) };
     let verified = traced(with_law("gran/hertz/history", 0.2, window));
     assert!(verified.report.agrees, "{:?}", verified.report);
-    let found = verified.atlas.boundaries_at(1.0 + 1e-4);
+    let found = verified.boundaries_at(1.0 + 1e-4);
     assert!(found.windows(2).all(|pair| pair[0] < pair[1]) && found.len() >= 4, "{found:?}");
 }
 
@@ -166,9 +165,9 @@ fn a_vertex_with_a_touch_stays_where_the_other_boundaries_meet() {
     let window = Frame { tangential_damping: 0.5, ..frame((1.0, 10.0), (0.1, 3.0)) };
     let verified = traced(with_law("gran/hooke/history", 0.2, window));
     assert!(verified.report.agrees, "{:?}", verified.report);
-    let atlas = &verified.atlas;
+    let atlas = &verified;
     let vertices = atlas.regions.vertices().iter();
-    let parameters = vertices.map(|vertex| atlas.chart.parameters(&vertex.point));
+    let parameters = vertices.map(|vertex| atlas.plane.parameters(&vertex.point));
     // As found in the window of κ 4.4 to 4.5 and ψ 0.19 to 0.2.
     let there = parameters.filter(|[kappa, psi]| {
         (kappa - 4.452_416_452_242).abs() < 1e-10 && (psi - 0.193_737_575_742).abs() < 1e-10

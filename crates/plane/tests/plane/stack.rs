@@ -8,7 +8,7 @@ use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Contact, InvalidValue};
 use stickslip_plane::atlas::{Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, stack};
+use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, StackDocument, stack};
 use stickslip_solver::margin::{Hint, Margin, Place};
 
 use crate::windows::frame;
@@ -50,8 +50,8 @@ fn changes_lead_from_one_atlas_to_the_next() {
             }
             for effect in &change.effects {
                 add(
-                    &effect.itinerary,
-                    if ["born", "splits"].contains(&effect.effect) { 1 } else { -1 },
+                    effect.label(),
+                    if ["born", "splits"].contains(&effect.name()) { 1 } else { -1 },
                 );
             }
         }
@@ -68,7 +68,7 @@ fn changes_lead_from_one_atlas_to_the_next() {
 #[test]
 fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidValue> {
     let mut tried = 0;
-    for change in &STACK.changes {
+    for change in StackDocument::from(&*STACK).changes {
         let Some(meeting) = &change.meeting else { continue };
         let [low, high] = change.between;
         assert!(low < meeting.damping && meeting.damping < high);
@@ -115,7 +115,7 @@ fn dies_in_a_swallowtail(kappa: (f64, f64), psi: (f64, f64)) -> Result<(), Inval
     let tolerance = window.tolerances().usual;
     let stack = stack(window, &[0.41, 0.4108, 0.412], tolerance, SILENT).unwrap();
     assert_eq!(stack.objection(), None, "{:?}", stack.changes);
-    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let [change] = &StackDocument::from(&stack).changes[..] else { panic!("{:?}", stack.changes) };
     let [effect] = &change.effects[..] else { panic!("{change:?}") };
     assert_eq!((effect.effect, &effect.itinerary[..]), ("dies", "o+o+o-"));
     let meeting = change.meeting.as_ref().unwrap();
@@ -135,7 +135,7 @@ fn dies_in_a_swallowtail(kappa: (f64, f64), psi: (f64, f64)) -> Result<(), Inval
     for (damping, expected) in [(low, 1), (high, 0)] {
         let counts = |layer: &DampingLayer| layer.region_counts().get("o+o+o-").copied();
         let direct = trace(Frame { damping, ..window }, tolerance, SILENT).unwrap();
-        assert_eq!(direct.report.objection(), None);
+        assert_eq!(direct.objection(), None);
         let layer = DampingLayer { damping, atlas: direct, as_stacked: None };
         let others = counts(&stack.layers[2]).unwrap_or(0);
         assert_eq!(counts(&layer).unwrap_or(0), others + expected, "{damping}");
@@ -152,15 +152,15 @@ fn a_meeting_beside_a_change_is_not_its_cause() {
     let tolerance = window.tolerances().usual;
     let stack = stack(window, &[4e-4, 0.002], tolerance, SILENT).unwrap();
     assert_eq!(stack.objection(), None, "{:?}", stack.changes);
-    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let [change] = &StackDocument::from(&stack).changes[..] else { panic!("{:?}", stack.changes) };
     let meeting = change.meeting.as_ref().unwrap();
     let [low, high] = change.between;
     assert!(high - low < 2e-4 * low && low < meeting.damping && meeting.damping < high);
     let regions = [0.99995, 1.00005].map(|part| {
         let damping = part * meeting.damping;
         let direct = trace(Frame { damping, ..window }, tolerance, SILENT).unwrap();
-        assert_eq!(direct.report.objection(), None);
-        direct.atlas.regions.regions().len()
+        assert_eq!(direct.objection(), None);
+        direct.regions.regions().len()
     });
     assert_eq!(regions, [15, 16], "{change:?}");
 }
@@ -172,7 +172,7 @@ fn a_region_is_born_in_a_sharp_crossing_on_the_edge() {
     let window = frame((0.3, 0.6), (0.01, 0.5));
     let stack = stack(window, &[4.59e-6, 4.6e-6], window.tolerances().usual, SILENT).unwrap();
     assert_eq!(stack.objection(), None, "{:?}", stack.changes);
-    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let [change] = &StackDocument::from(&stack).changes[..] else { panic!("{:?}", stack.changes) };
     let meeting = change.meeting.as_ref().unwrap();
     assert_eq!((meeting.kind, meeting.psi), ("edge", 0.01));
     let [low, high] = change.between;

@@ -20,7 +20,7 @@ pub struct Course {
     pub resolved: bool,
     /// What the model says of each measured quantity, at the best and the next minima.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(super) curves: Vec<Curve>,
+    pub curves: Vec<Curve>,
 }
 
 /// An angle at which the switches change.
@@ -37,15 +37,16 @@ pub struct Boundary {
 
 /// A quantity over the angle, by one of the minima.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Curve {
+pub struct Curve {
+    /// The quantity.
     pub quantity: Measured,
     /// The index of the minimum.
     pub minimum: usize,
-    /// Angles in degrees, and the quantity; angles too where it is one.
+    /// Angles from the normal in degrees, and the quantity as [`Measured::shown`].
     pub points: Vec<(f64, f64)>,
 }
 
-/// Minima that are drawn.
+/// Minima that have curves.
 pub const DRAWN: usize = 3;
 /// Points of a curve.
 const POINTS: u32 = 361;

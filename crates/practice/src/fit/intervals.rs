@@ -8,13 +8,31 @@ use super::search::root;
 
 /// The interval of a fitted number, which may consist of several pieces.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "IntervalFields"))]
 pub struct Interval {
     /// The number.
     pub parameter: Free,
     /// The pieces, in rising order. `None` if there are as many free numbers as data and the size
     /// of the errors is not known.
     pub pieces: Option<Vec<Piece>>,
+}
+
+/// An interval in the file of a fit.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize)]
+struct IntervalFields {
+    parameter: Free,
+    pieces: Option<Vec<Piece>>,
+    verdict: String,
+}
+
+#[cfg(feature = "serde")]
+impl From<Interval> for IntervalFields {
+    fn from(interval: Interval) -> Self {
+        let verdict = interval.verdict();
+        let Interval { parameter, pieces } = interval;
+        Self { parameter, pieces, verdict }
+    }
 }
 
 /// A piece of an interval.
@@ -37,6 +55,37 @@ impl Interval {
     pub fn holds(&self, value: f64) -> Option<bool> {
         let pieces = self.pieces.as_ref()?;
         Some(pieces.iter().any(|piece| (piece.low..=piece.high).contains(&value)))
+    }
+
+    /// What the data decide of the number, and what they leave open, in a sentence.
+    #[must_use]
+    pub fn verdict(&self) -> String {
+        let name = self.parameter.name();
+        let Some(pieces) = &self.pieces else {
+            return format!("{name} is open: there are no more data than free numbers");
+        };
+        let open = |piece: &Piece| piece.from_end_of_range || piece.to_end_of_range;
+        let one = |piece: &Piece| {
+            let Piece { low, high, from_end_of_range, to_end_of_range } = *piece;
+            match (from_end_of_range, to_end_of_range) {
+                (false, false) => format!("{low:.4} to {high:.4}"),
+                (true, false) => format!("below {high:.4}"),
+                (false, true) => format!("above {low:.4}"),
+                (true, true) => "anything in its range".to_owned(),
+            }
+        };
+        let all = pieces.iter().map(one).collect::<Vec<_>>().join(", or ");
+        match &pieces[..] {
+            [piece] if !open(piece) => format!("{name} is decided: {all}"),
+            [piece] if piece.from_end_of_range && piece.to_end_of_range => {
+                format!("{name} is open: the data fit with {all}")
+            }
+            [_] => format!("{name} is decided on one side only: {all}"),
+            pieces if pieces.iter().any(open) => {
+                format!("{name} is open: the data fit in {} places, {all}", pieces.len())
+            }
+            pieces => format!("{name} is decided up to {} places: {all}", pieces.len()),
+        }
     }
 }
 
@@ -128,4 +177,42 @@ pub fn interval(
         (piece.low, piece.high) = (value(piece.low), value(piece.high));
     }
     Ok(Interval { parameter, pieces: Some(pieces) })
+}
+
+#[cfg(test)]
+mod verdicts {
+    use super::*;
+
+    #[test]
+    fn a_verdict_says_what_is_open() {
+        let piece = |low, high, from_end_of_range, to_end_of_range| Piece {
+            low,
+            high,
+            from_end_of_range,
+            to_end_of_range,
+        };
+        let verdict = |pieces| Interval { parameter: Free::Mu, pieces }.verdict();
+        for (pieces, expected) in [
+            (None, "mu is open: there are no more data than free numbers"),
+            (Some(vec![piece(0.1, 0.25, false, false)]), "mu is decided: 0.1000 to 0.2500"),
+            (
+                Some(vec![piece(0.1, 1.0, false, true)]),
+                "mu is decided on one side only: above 0.1000",
+            ),
+            (
+                Some(vec![piece(0.01, 1.0, true, true)]),
+                "mu is open: the data fit with anything in its range",
+            ),
+            (
+                Some(vec![piece(0.1, 0.2, false, false), piece(0.3, 0.4, false, false)]),
+                "mu is decided up to 2 places: 0.1000 to 0.2000, or 0.3000 to 0.4000",
+            ),
+            (
+                Some(vec![piece(0.1, 0.2, false, false), piece(0.3, 1.0, false, true)]),
+                "mu is open: the data fit in 2 places, 0.1000 to 0.2000, or above 0.3000",
+            ),
+        ] {
+            assert_eq!(verdict(pieces), expected);
+        }
+    }
 }

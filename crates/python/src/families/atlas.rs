@@ -8,8 +8,8 @@ use stickslip_figure::pictures::family::draw_runs;
 use stickslip_plane::sealed;
 use stickslip_solver::margin::{Margin, Place};
 use stickslip_tracer::{
-    Atlas, AtlasOptions, Document, End, Followed, Itinerary, Location, Point, SCHEMA, SpecialPoint,
-    VertexKind,
+    Atlas, AtlasOptions, Document, End, Followed, Itinerary, Location, Names, Point, RunNames,
+    SCHEMA, SpecialPoint, VertexKind,
 };
 
 use crate::arrays::{expect_equal, numbers};
@@ -23,39 +23,43 @@ pub type Label = (&'static str, Vec<usize>);
 pub struct FamilyAtlas {
     pub atlas: Atlas<Itinerary, Margin>,
     pub options: AtlasOptions,
-    pub description: Description,
+    pub names: RunNames,
 }
 
 /// What a file says about a family: its name, the names of the two parameters, and those of guards.
-#[derive(Clone, PartialEq, FromPyObject)]
-pub struct Description(pub String, pub [String; 2], pub Vec<String>);
+#[derive(FromPyObject)]
+pub struct Description(String, [String; 2], Vec<String>);
 
-impl Description {
-    /// Requires a family to have the same parameters and guards as another one of its stack.
-    pub fn expect_like(&self, first: &Self) -> PyResult<()> {
-        let Self(_, axes, guards) = self;
-        let Self(_, others, theirs) = first;
-        if (axes, guards) == (others, theirs) {
-            return Ok(());
-        }
-        Err(bad_input(format!(
-            "the family is of {axes:?} with guards {guards:?}; expected {others:?} with guards \
-             {theirs:?}, as in the first one"
-        )))
+impl From<Description> for RunNames {
+    fn from(Description(family, axes, guards): Description) -> Self {
+        Self { family, axes, guards }
     }
+}
 
-    /// Requires an atlas to be of this family.
-    pub fn expect(&self, family: &Self) -> PyResult<()> {
-        if self == family {
-            return Ok(());
-        }
-        let Self(name, axes, guards) = self;
-        let Self(other, others, theirs) = family;
-        Err(bad_input(format!(
-            "the atlas is of the family {name:?} of {axes:?} with guards {guards:?}; expected one \
-             of {other:?} of {others:?} with guards {theirs:?}"
-        )))
+/// Requires a family to have the same parameters and guards as another one of its stack.
+pub fn expect_like(own: &RunNames, first: &RunNames) -> PyResult<()> {
+    let RunNames { axes, guards, .. } = own;
+    let RunNames { axes: others, guards: theirs, .. } = first;
+    if (axes, guards) == (others, theirs) {
+        return Ok(());
     }
+    Err(bad_input(format!(
+        "the family is of {axes:?} with guards {guards:?}; expected {others:?} with guards \
+         {theirs:?}, as in the first one"
+    )))
+}
+
+/// Requires an atlas to be of this family.
+pub fn expect(own: &RunNames, expected: &RunNames) -> PyResult<()> {
+    if own == expected {
+        return Ok(());
+    }
+    let RunNames { family, axes, guards } = own;
+    let RunNames { family: other, axes: others, guards: theirs } = expected;
+    Err(bad_input(format!(
+        "the atlas is of the family {family:?} of {axes:?} with guards {guards:?}; expected one \
+         of {other:?} of {others:?} with guards {theirs:?}"
+    )))
 }
 
 #[pymethods]
@@ -71,22 +75,17 @@ impl FamilyAtlas {
             sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
             let document: Document<Itinerary, Margin> =
                 serde_json::from_str(text).map_err(|error| error.to_string())?;
-            let Document { family, axes, guards, options, .. } = document.clone();
+            let (names, options) = (document.names(), document.options);
             let atlas = document.atlas().map_err(|error| error.to_string())?;
-            Ok(Self { atlas, options, description: Description(family, axes, guards) })
+            Ok(Self { atlas, options, names })
         })
         .map_err(bad_input)
     }
 
     /// The document of the atlas as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        let Description(family, [x, y], guards) = &self.description;
-        py.detach(|| {
-            let mut document = Document::new(&self.atlas, &self.options, family, [x, y]);
-            document.guards.clone_from(guards);
-            sealed::to_string(&document)
-        })
-        .map_err(failed)
+        let document = || Document::of_runs(&self.atlas, &self.options, &self.names);
+        py.detach(|| sealed::to_string(&document())).map_err(failed)
     }
 
     /// Whether the trace came to its end.
@@ -98,14 +97,16 @@ impl FamilyAtlas {
     /// What speaks against the atlas.
     #[getter]
     fn objection(&self) -> Option<String> {
-        self.atlas.objection()
+        self.atlas.doubts(&self.names).map(|doubts| doubts.objection())
     }
 
     /// What is inconsistent, and what is unresolved, in words.
     #[getter]
     fn doubts(&self) -> (Vec<String>, Vec<String>) {
         let findings = self.atlas.verification.standing(&self.atlas.plane).map(ToString::to_string);
-        let unresolved = self.atlas.unresolved.iter().map(ToString::to_string);
+        let vertices = self.atlas.plane.vertices();
+        let unresolved =
+            self.atlas.unresolved.iter().map(|what| self.names.unresolved(what, vertices));
         (findings.collect(), unresolved.collect())
     }
 
@@ -151,8 +152,7 @@ impl FamilyAtlas {
 
     /// The picture as SVG.
     fn picture(&self, py: Python<'_>) -> String {
-        let Description(family, [x, y], _) = &self.description;
-        py.detach(|| draw_runs(&self.atlas, family, [x, y]).document())
+        py.detach(|| draw_runs(&self.atlas, &self.names).document())
     }
 
     /// The region of each point and its distance from the nearest curve in y: −1 on a curve within
@@ -180,12 +180,8 @@ impl FamilyAtlas {
 }
 
 impl FamilyAtlas {
-    pub fn new(
-        atlas: Atlas<Itinerary, Margin>,
-        options: AtlasOptions,
-        description: Description,
-    ) -> Self {
-        Self { atlas, options, description }
+    pub fn new(atlas: Atlas<Itinerary, Margin>, options: AtlasOptions, names: RunNames) -> Self {
+        Self { atlas, options, names }
     }
 
     /// The labels of points of the window that the regions tell, and the indices of those that they

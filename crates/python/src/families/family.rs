@@ -7,10 +7,14 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_expression::{RuleOrder, SystemFamily};
-use stickslip_tracer::{AtlasOptions, Family, Monitor, Point, TraceOptions, Window, follow};
+use stickslip_tracer::{
+    AtlasOptions, Family, Monitor, Point, RunNames, TraceOptions, Window, follow,
+};
 
 use crate::failure::{bad_input, failed};
-use crate::families::atlas::{Description, FamilyAtlas, Label, followed, label, place, points};
+use crate::families::atlas::{
+    Description, FamilyAtlas, Label, expect, followed, label, place, points,
+};
 use crate::families::blueprint::Blueprint;
 use crate::families::failure::of_trace;
 use crate::families::runner::{Made, Runner};
@@ -28,7 +32,7 @@ type MarginFields = (Vec<usize>, usize, &'static str, f64);
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct HybridFamily {
     pub made: Made,
-    pub description: Description,
+    pub names: RunNames,
 }
 
 #[pymethods]
@@ -46,7 +50,7 @@ impl HybridFamily {
         description: Description,
     ) -> PyResult<Self> {
         let blueprint = Blueprint::new(py, system, &args, start, end, &settings)?;
-        Ok(Self { made: Made::Functions(Arc::new(blueprint)), description })
+        Ok(Self { made: Made::Functions(Arc::new(blueprint)), names: description.into() })
     }
 
     /// The family of a system of formulas over two of its parameters, with the values of all, the
@@ -64,17 +68,19 @@ impl HybridFamily {
     ) -> PyResult<Self> {
         let (name, names) = names;
         let order = order.map(|(names, places)| RuleOrder { names, places });
-        let order = order.unwrap_or_else(|| RuleOrder::of(&system.0));
+        let order = order.unwrap_or_else(|| RuleOrder::of(&system.system));
         let (_, options) = settings.checked()?;
-        let family = SystemFamily::ordered(&system.0, order, axes, &parameters, (end, options));
+        let family =
+            SystemFamily::ordered(&system.system, order, axes, &parameters, (end, options));
         let family = family.map_err(bad_input)?;
-        let description = Description(name, names, family.rules().to_vec());
-        Ok(Self { made: Made::Formulas(Arc::new(family)), description })
+        let guards = family.rules().to_vec();
+        let names = RunNames { family: name, axes: names, guards };
+        Ok(Self { made: Made::Formulas(Arc::new(family)), names })
     }
 
     /// The names of the guards.
     fn guards(&self) -> Vec<String> {
-        self.description.2.clone()
+        self.names.guards.clone()
     }
 
     /// Traces the boundaries between two values of each parameter. Returns the atlas, and an
@@ -96,7 +102,7 @@ impl HybridFamily {
             survey(py, &runner, options, threads, &callbacks, |surveyor, runner| {
                 surveyor.atlas(runner, &window)
             })?;
-        let atlas = FamilyAtlas::new(atlas, options, self.description.clone());
+        let atlas = FamilyAtlas::new(atlas, options, self.names.clone());
         Ok((atlas, wish.map(|error| error.into_value(py).into_any())))
     }
 
@@ -109,7 +115,7 @@ impl HybridFamily {
         callbacks: Callbacks,
     ) -> PyResult<(FamilyAtlas, Option<Py<PyAny>>)> {
         let _level = Level::enter()?;
-        atlas.description.expect(&self.description)?;
+        expect(&atlas.names, &self.names)?;
         let threads = self.threads(threads);
         let runner = self.runner(Trouble::patient(), threads.is_none());
         let (begun, options) = (&atlas.atlas, atlas.options);
@@ -117,7 +123,7 @@ impl HybridFamily {
             survey(py, &runner, options, threads, &callbacks, |surveyor, runner| {
                 surveyor.resume(runner, begun.clone())
             })?;
-        let atlas = FamilyAtlas::new(atlas, options, self.description.clone());
+        let atlas = FamilyAtlas::new(atlas, options, self.names.clone());
         Ok((atlas, wish.map(|error| error.into_value(py).into_any())))
     }
 
@@ -143,7 +149,7 @@ impl HybridFamily {
         y: PyReadonlyArray1<'_, f64>,
         threads: usize,
     ) -> PyResult<Vec<Option<Label>>> {
-        atlas.description.expect(&self.description)?;
+        expect(&atlas.names, &self.names)?;
         let points = points(&x, &y)?;
         let (mut labels, open) = atlas.told(&points);
         let places: Vec<Point> = open.iter().map(|&index| points[index]).collect();

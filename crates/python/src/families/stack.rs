@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use stickslip_tracer::{AtlasOptions, Change, Itinerary, Layer, Stack, StackOptions};
 
 use crate::failure::bad_input;
-use crate::families::atlas::{FamilyAtlas, Label, label};
+use crate::families::atlas::{FamilyAtlas, Label, expect_like, label};
 use crate::families::failure::{of_stack, with_value};
 use crate::families::family::{HybridFamily, window_of};
 use crate::families::runner::Runner;
@@ -54,8 +54,8 @@ pub fn stack_family(
     let objection = stack.objection();
     let Stack { layers, changes, atlases, finished, .. } = stack;
     let of_layer = |layer: Layer<_, _>| {
-        let description = families.at(py, layer.value)?.get().description.clone();
-        Ok(FamilyAtlas::new(layer.atlas, options.atlas, description))
+        let names = families.at(py, layer.value)?.get().names.clone();
+        Ok(FamilyAtlas::new(layer.atlas, options.atlas, names))
     };
     let layers = layers.into_iter().map(of_layer).collect::<PyResult<_>>()?;
     let changes = changes.iter().map(fields).collect();
@@ -107,7 +107,7 @@ impl Families {
         }
         let family = made(py, &self.function, value)?;
         let first = self.first.get();
-        family.get().description.expect_like(&first.description)?;
+        expect_like(&family.get().names, &first.names)?;
         if first.made.is_compiled() && !family.get().made.is_compiled() {
             return Err(bad_input(
                 "the family has functions of Python; expected compiled ones, as in the first one",

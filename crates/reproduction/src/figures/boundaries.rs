@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use serde_json::json;
-use stickslip_figure::{number, pictures};
+use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::{number, pictures as drawn};
 use stickslip_model::exact;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Atlas, Frame, VerifiedAtlas, trace};
+use stickslip_plane::atlas::{Atlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_studies::{Picture, Study};
+use stickslip_studies::Study;
 
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -31,9 +32,23 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let tolerance = frame.tolerances().usual;
     let verified = Arc::new(trace(frame, tolerance, SILENT)?);
 
-    let distance = distance_from_closed_form(&verified.atlas);
+    let distance = distance_from_closed_form(&verified);
     let report = &verified.report;
-    let map = &verified.atlas.regions;
+    let map = &verified.regions;
+    let pictures = vec![Picture {
+        name: "boundaries".to_owned(),
+        caption: format!(
+            "Every boundary on which the switches of an undamped collision change, for κ from {} \
+             to {} and ψ from {} to {}, which is enough for every μ and α. The closed form of the \
+             uppermost boundary is drawn beneath it. The marks at the bottom are the stiffnesses at \
+             which boundaries end as ψ vanishes.",
+            number(KAPPA.low, 4),
+            number(KAPPA.high, 4),
+            number(PSI.low, 4),
+            number(PSI.high, 4)
+        ),
+        svg: drawn::atlas::draw(&verified),
+    }];
     let study = Study {
         name: "boundaries",
         title: TITLE,
@@ -60,27 +75,13 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
             "distance_from_closed_form": distance,
         }),
         tables: Vec::new(),
-        pictures: vec![Picture {
-            name: "boundaries",
-            caption: format!(
-                "Every boundary on which the switches of an undamped collision change, for κ from {} \
-                 to {} and ψ from {} to {}, which is enough for every μ and α. The closed form of the \
-                 uppermost boundary is drawn beneath it. The marks at the bottom are the stiffnesses at \
-                 which boundaries end as ψ vanishes.",
-                number(KAPPA.low, 4),
-                number(KAPPA.high, 4),
-                number(PSI.low, 4),
-                number(PSI.high, 4)
-            ),
-            svg: pictures::atlas::draw(&verified.atlas),
-        }],
     };
     let title = "the atlas, for stickslip locate";
-    Ok(Section::from(study).with_atlas("atlas.json", title, &verified))
+    Ok(Section::new(study, pictures).with_atlas("atlas.json", title, &verified))
 }
 
-fn headline(verified: &VerifiedAtlas) -> String {
-    let (map, report) = (&verified.atlas.regions, &verified.report);
+fn headline(verified: &Atlas) -> String {
+    let (map, report) = (&verified.regions, &verified.report);
     let wrong = match report.mismatches.len() {
         0 => format!("none of {} collisions has other switches than its region", report.tried),
         wrong => {
@@ -97,8 +98,8 @@ fn headline(verified: &VerifiedAtlas) -> String {
 }
 
 /// What is in an atlas and how it was verified, in sentences.
-pub fn summary(verified: &VerifiedAtlas) -> String {
-    let (map, report) = (&verified.atlas.regions, &verified.report);
+pub fn summary(verified: &Atlas) -> String {
+    let (map, report) = (&verified.regions, &verified.report);
     let agree = if report.agrees { "all agree with them" } else { "not all agree with them" };
     format!(
         "{} boundaries, {} vertices and {} regions were traced. Of {} collisions computed at random \
@@ -119,6 +120,6 @@ fn distance_from_closed_form(atlas: &Atlas) -> f64 {
     // The label of its upper side has one phase.
     let uppermost = curves.filter(|curve| curve.sides.iter().any(|side| side.len() == 1));
     let points =
-        uppermost.flat_map(|curve| &curve.nodes).map(|node| atlas.chart.parameters(&node.point));
+        uppermost.flat_map(|curve| &curve.nodes).map(|node| atlas.plane.parameters(&node.point));
     points.fold(0.0, |most, [kappa, psi]| f64::max(most, (psi - exact::top_boundary(kappa)).abs()))
 }

@@ -1,13 +1,14 @@
 //! Figure 1: pure Coulomb sliding.
 
 use serde_json::json;
-use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
+use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::style::FRAME;
 use stickslip_model::limits::coulomb;
 use stickslip_plane::{GridAxis, Range};
 use stickslip_studies::paper::{ALPHA, MU, psi, ratio};
-use stickslip_studies::{Cell, Column, Picture, Study, Table};
+use stickslip_studies::{Cell, Column, Study, Table};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -58,7 +59,16 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         points: Vec::new(),
     };
     let svg = map::draw(&title, &[panel])?;
-    Ok(Section::from(Study {
+    let pictures = vec![Picture {
+        name: "figure1".to_owned(),
+        caption: format!(
+            "ε_t^C = max(0, 1 − (1 + ε_n)(μ/α) g_n/g_t) of (15) and (16) with ε_n = 1, over the \
+             normal and the tangential impact velocity. Below the line, g_t/g_n = {}, ε_t^C is 0.",
+            number(limit, 6)
+        ),
+        svg,
+    }];
+    let study = Study {
         name: "figure1",
         title: TITLE,
         headlines: Vec::new(),
@@ -75,16 +85,8 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
             columns: COLUMNS.to_vec(),
             rows: points.iter().map(|point| point.map(Cell::Number).to_vec()).collect(),
         }],
-        pictures: vec![Picture {
-            name: "figure1",
-            caption: format!(
-                "ε_t^C = max(0, 1 − (1 + ε_n)(μ/α) g_n/g_t) of (15) and (16) with ε_n = 1, over the \
-                 normal and the tangential impact velocity. Below the line, g_t/g_n = {}, ε_t^C is 0.",
-                number(limit, 6)
-            ),
-            svg,
-        }],
-    }))
+    };
+    Ok(Section::new(study, pictures))
 }
 
 /// The line up to which sliding comes to rest, g_t/g_n = 2μ/α, in a plane of velocities up to

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use serde_json::json;
-use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
+use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::style::FRAME;
 use stickslip_model::spheres::{BodyPair, Surface};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Range};
+use stickslip_studies::Study;
 use stickslip_studies::paper::{MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, ratio};
-use stickslip_studies::{Picture, Study};
 
 use super::figure1::limit_line;
 use super::reproduction::Reproduction;
@@ -58,6 +59,22 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let lines = vec![(FRAME, limit_line(VELOCITY.high))];
     let panels = panels.map(|panel| MapPanel { lines: lines.clone(), ..panel });
     let svg = map::draw(&title, &panels)?;
+    let pictures = vec![Picture {
+        name: "figure2".to_owned(),
+        caption: format!(
+            "ε_t and the number of switches over the impact velocities of two spheres with R = {} \
+             m, Y = {} Pa, ν = {}, {} kg/m^3, k_t = {} kg/s^2 and μ = {}, without damping. The line \
+             is g_t/g_n = 2μ/α = {}; above it there is no switch.",
+            short(STEEL_RADIUS_M),
+            short(STEEL.young_modulus_pa),
+            short(STEEL.poisson_ratio),
+            short(STEEL.density_kg_per_m3),
+            short(STEEL_STIFFNESS_KG_PER_S2),
+            short(MU),
+            number(ratio(2.0), 6)
+        ),
+        svg,
+    }];
     let study = Study {
         name: "figure2",
         title: TITLE,
@@ -98,22 +115,6 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
             "mindlin_kappa": pair.mindlin_kappa(),
         }),
         tables: Vec::new(),
-        pictures: vec![Picture {
-            name: "figure2",
-            caption: format!(
-                "ε_t and the number of switches over the impact velocities of two spheres with R = {} \
-                 m, Y = {} Pa, ν = {}, {} kg/m^3, k_t = {} kg/s^2 and μ = {}, without damping. The line \
-                 is g_t/g_n = 2μ/α = {}; above it there is no switch.",
-                short(STEEL_RADIUS_M),
-                short(STEEL.young_modulus_pa),
-                short(STEEL.poisson_ratio),
-                short(STEEL.density_kg_per_m3),
-                short(STEEL_STIFFNESS_KG_PER_S2),
-                short(MU),
-                number(ratio(2.0), 6)
-            ),
-            svg,
-        }],
     };
-    Ok(Section::from(study).with_map("figure2", "Figure 2 as arrays".to_owned(), &sweep))
+    Ok(Section::new(study, pictures).with_map("figure2", "Figure 2 as arrays".to_owned(), &sweep))
 }

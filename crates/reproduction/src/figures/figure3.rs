@@ -3,9 +3,10 @@
 use serde_json::{Value, json};
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
+use stickslip_figure::pictures::studies::Picture;
 use stickslip_plane::Quantity;
+use stickslip_studies::Study;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_3, MOST_STIFFNESS, MU, Reading};
-use stickslip_studies::{Picture, Study};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -28,6 +29,19 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         ..map.sweep.restitution(heading)
     });
     let svg = map::draw(&title("tangential restitution"), &panels.collect::<Vec<_>>())?;
+    let pictures = vec![Picture {
+        name: "figure3".to_owned(),
+        caption: format!(
+            "ε_t without damping, μ = {}, α = {}. To the left the axis is κ of (24). To the right \
+             it is ακ, so that {} at its end is κ = {}. Colours are the same on both sides of \
+             zero.",
+            number(MU, 4),
+            number(ALPHA, 4),
+            number(MOST_STIFFNESS, 4),
+            number(Reading::Axis.kappa(MOST_STIFFNESS), 4)
+        ),
+        svg,
+    }];
     let study = Study {
         name: "figure3",
         title: TITLE,
@@ -35,21 +49,10 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         findings,
         json: json!({ "mu": MU, "alpha": ALPHA, "readings": numbers }),
         tables: Vec::new(),
-        pictures: vec![Picture {
-            name: "figure3",
-            caption: format!(
-                "ε_t without damping, μ = {}, α = {}. To the left the axis is κ of (24). To the right \
-                 it is ακ, so that {} at its end is κ = {}. Colours are the same on both sides of \
-                 zero.",
-                number(MU, 4),
-                number(ALPHA, 4),
-                number(MOST_STIFFNESS, 4),
-                number(Reading::Axis.kappa(MOST_STIFFNESS), 4)
-            ),
-            svg,
-        }],
     };
-    Ok(maps.iter().fold(study.into(), |section, map| map.filed(section, "figure3")))
+    Ok(maps
+        .iter()
+        .fold(Section::new(study, pictures), |section, map| map.filed(section, "figure3")))
 }
 
 /// The extreme values of a map, in a sentence and as numbers.

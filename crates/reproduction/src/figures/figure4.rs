@@ -2,12 +2,13 @@
 
 use serde_json::json;
 use stickslip_figure::canvas::shape::Stroke;
-use stickslip_figure::number;
-use stickslip_figure::pictures::atlas::{boundaries, stroke};
+use stickslip_figure::pictures::atlas::boundaries;
 use stickslip_figure::pictures::map::{self, MapPanel};
-use stickslip_plane::atlas::VerifiedAtlas;
+use stickslip_figure::pictures::studies::Picture;
+use stickslip_figure::{number, style};
+use stickslip_plane::atlas::Atlas;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
-use stickslip_studies::{Column, Picture, Study, Table};
+use stickslip_studies::{Column, Study, Table};
 
 use super::boundaries::summary;
 use super::columns::{AXIS, KAPPA, PHASES, SWITCHES};
@@ -58,6 +59,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let svg = map::draw(&title("number of switches"), &panels.collect::<Vec<_>>())?;
     let most = maps.each_ref().map(|map| map.sweep.most_switches());
     let table = table(&lines, &points);
+    let pictures = vec![Picture::new("figure4", &caption(&lines[1], &points), svg)];
     let study = Study {
         name: "figure4",
         title: TITLE,
@@ -71,20 +73,19 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
             "line": table.json(),
         }),
         tables: vec![table],
-        pictures: vec![Picture { name: "figure4", caption: caption(&lines[1], &points), svg }],
     };
-    let section = Section { shown: vec!["figure4"], ..study.into() };
+    let section = Section { shown: vec!["figure4"], ..Section::new(study, pictures) };
     let section = maps.iter().fold(section, |section, map| map.filed(section, "figure4"));
     let title = "the traced boundaries as an atlas, for stickslip locate";
     Ok(section.with_atlas(ATLAS, title, verified))
 }
 
 /// The boundaries as lines of the picture.
-fn drawn(verified: &VerifiedAtlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f64)>)> {
+fn drawn(verified: &Atlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f64)>)> {
     let scale = reading.kappa(1.0);
-    let lines = boundaries(&verified.atlas).into_iter().map(|(line, points)| {
+    let lines = boundaries(verified).into_iter().map(|(line, points)| {
         let points = points.into_iter().map(|(kappa, psi)| (kappa / scale, ratio(psi)));
-        (Stroke { width: 1.2, ..stroke(line) }, points.collect())
+        (Stroke { width: 1.2, ..style::boundary(line) }, points.collect())
     });
     lines.collect()
 }
@@ -108,7 +109,7 @@ fn findings(
     lines: &Lines,
     points: &[LetteredPoint],
     most: [i32; 2],
-    verified: &VerifiedAtlas,
+    verified: &Atlas,
 ) -> Vec<String> {
     let mut findings = vec![format!(
         "The paper has up to {MOST_SWITCHES} switches at {} = {}. With the {} there are at most {} \

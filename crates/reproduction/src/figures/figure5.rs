@@ -3,9 +3,10 @@
 use serde_json::json;
 use stickslip_figure::number;
 use stickslip_figure::pictures::gallery::{self, Exhibit, PANEL_WIDTH};
+use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Collision;
 use stickslip_studies::paper::{ALPHA, MU, Reading, STIFFNESS};
-use stickslip_studies::{Cell, Column, Picture, Study, Table};
+use stickslip_studies::{Cell, Column, Study, Table};
 
 use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, POINT, RATIO, SWITCHES};
 use super::course::{first_and_last, followed, largest_compression, rows};
@@ -58,9 +59,8 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let json = json!({ "mu": MU, "alpha": ALPHA, "axis": STIFFNESS, "points": table.json() });
     tables.insert(0, table);
     let headlines = Vec::new();
-    let study =
-        Study { name: "figure5", title: TITLE, headlines, findings, json, tables, pictures };
-    Ok(Section { shown: vec!["figure5"], ..study.into() })
+    let study = Study { name: "figure5", title: TITLE, headlines, findings, json, tables };
+    Ok(Section { shown: vec!["figure5"], ..Section::new(study, pictures) })
 }
 
 fn exhibit(reading: Reading, point: &LetteredPoint) -> Result<Exhibit, ReproductionError> {
@@ -150,5 +150,5 @@ fn picture(reading: Reading, exhibits: &[Exhibit]) -> Picture {
         reading.words(),
         number(exhibits.first().map_or(f64::NAN, |exhibit| exhibit.collision.contact_time), 5)
     );
-    Picture { name: name(reading), caption, svg }
+    Picture::new(name(reading), &caption, svg)
 }

@@ -4,10 +4,11 @@ use serde_json::json;
 use stickslip_figure::number;
 use stickslip_figure::pictures::collision::{self, PANEL_WIDTH};
 use stickslip_figure::pictures::course::Course;
+use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Collision;
 use stickslip_model::history::History;
 use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
-use stickslip_studies::{Column, Picture, Study, Table};
+use stickslip_studies::{Column, Study, Table};
 
 use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use super::course::{followed, rows};
@@ -63,7 +64,7 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
             rows: rows(&collision, &history, PANEL_WIDTH),
         });
         pictures.push(Picture {
-            name,
+            name: name.to_owned(),
             caption: format!(
                 "Forces and velocity at g_t/g_n = {} and κ = {kappa}, the {}.",
                 number(RATIO_6, 4),
@@ -90,9 +91,8 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let json = json!({ "mu": MU, "alpha": ALPHA, "axis": STIFFNESS_6, "collisions": table.json() });
     tables.insert(0, table);
     let headlines = Vec::new();
-    let study =
-        Study { name: "figure6", title: TITLE, headlines, findings, json, tables, pictures };
-    Ok(Section { shown: vec!["figure6"], ..study.into() })
+    let study = Study { name: "figure6", title: TITLE, headlines, findings, json, tables };
+    Ok(Section { shown: vec!["figure6"], ..Section::new(study, pictures) })
 }
 
 /// The first moment at which the force on the motion turns from braking to driving. There the

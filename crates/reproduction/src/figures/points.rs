@@ -44,7 +44,7 @@ pub fn intervals(
 ) -> Result<Vec<Interval>, ReproductionError> {
     let kappa = reading.kappa(STIFFNESS);
     let mut ends = vec![0.0];
-    ends.extend(reproduction.boundaries()?.atlas.boundaries_at(kappa).into_iter().map(ratio));
+    ends.extend(reproduction.boundaries()?.boundaries_at(kappa).into_iter().map(ratio));
     ends.push(MOST_RATIO_4);
     let interval = |ends: &[f64]| {
         let ratios = [ends[0], ends[1]];

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{AtlasError, Frame, VerifiedAtlas, trace};
+use stickslip_plane::atlas::{Atlas, AtlasError, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::paper::{MOST_RATIO_4, MOST_STIFFNESS, Reading, psi};
 
@@ -17,7 +17,7 @@ pub struct Reproduction {
     /// The model of the spring on which the statements are tested.
     pub spring: Spring,
     /// The boundaries of Figure 4, once they are traced.
-    boundaries: OnceLock<Arc<VerifiedAtlas>>,
+    boundaries: OnceLock<Arc<Atlas>>,
 }
 
 impl Reproduction {
@@ -32,7 +32,7 @@ impl Reproduction {
     ///
     /// # Errors
     /// [`AtlasError`]: they cannot be traced.
-    pub(super) fn boundaries(&self) -> Result<&Arc<VerifiedAtlas>, AtlasError> {
+    pub(super) fn boundaries(&self) -> Result<&Arc<Atlas>, AtlasError> {
         if let Some(verified) = self.boundaries.get() {
             return Ok(verified);
         }

@@ -5,8 +5,9 @@
 
 use std::sync::Arc;
 
+use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Engine;
-use stickslip_plane::atlas::VerifiedAtlas;
+use stickslip_plane::atlas::Atlas;
 use stickslip_plane::sweep::{Failed, FailureCount};
 use stickslip_studies::Study;
 
@@ -18,6 +19,8 @@ use crate::statements::Audit;
 pub struct Section {
     /// What was computed.
     pub study: Study,
+    /// Its pictures.
+    pub pictures: Vec<Picture>,
     /// The names of those of its tables that a page shows.
     pub shown: Vec<&'static str>,
     /// The statements of the paper with their verdicts, in the part that tests them.
@@ -45,7 +48,7 @@ pub enum Content {
     /// A map.
     Map(Arc<Sweep>),
     /// An atlas.
-    Atlas(Arc<VerifiedAtlas>),
+    Atlas(Arc<Atlas>),
 }
 
 /// Something that speaks against a result.
@@ -77,14 +80,14 @@ pub fn headlines(sections: &[Section]) -> Vec<String> {
     sections.iter().flat_map(|section| &section.study.headlines).cloned().collect()
 }
 
-impl From<Study> for Section {
-    fn from(study: Study) -> Self {
-        let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());
-        Self { study, shown, audit: None, files, objections }
-    }
-}
-
 impl Section {
+    /// A study with its pictures, and nothing else.
+    #[must_use]
+    pub fn new(study: Study, pictures: Vec<Picture>) -> Self {
+        let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());
+        Self { study, pictures, shown, audit: None, files, objections }
+    }
+
     /// The names of all files with data, and what they hold.
     #[must_use]
     pub fn data(&self) -> Vec<(String, &str)> {
@@ -110,14 +113,9 @@ impl Section {
 
     /// The section with an atlas as `name`, and with what speaks against the atlas.
     #[must_use]
-    pub(super) fn with_atlas(
-        mut self,
-        name: &str,
-        title: &str,
-        atlas: &Arc<VerifiedAtlas>,
-    ) -> Self {
+    pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
-        if let Some(reason) = atlas.report.objection() {
+        if let Some(reason) = atlas.objection() {
             self.objections.push(Objection::Doubtful { file: name.clone(), reason });
         }
         self.files.push(DataFile { name, title, content: Content::Atlas(Arc::clone(atlas)) });

@@ -1,5 +1,6 @@
 //! The studies as parts of the reproduction.
 
+use stickslip_figure::pictures::studies as pictures;
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::{convergence, stiff_springs};
 
@@ -10,14 +11,17 @@ use crate::statements;
 
 /// The study of convergence, without the times, which differ from run to run.
 pub fn convergence(_: &Reproduction) -> Result<Section, ReproductionError> {
-    let mut study = convergence::run(&convergence::Settings::usual(0.0)?, SILENT)?;
+    let measured = convergence::run(&convergence::Settings::usual(0.0)?, SILENT)?;
+    let mut study = measured.study();
     study.tables.retain(|table| table.name != convergence::TIMES);
-    Ok(Section { shown: vec![convergence::ORDERS], ..study.into() })
+    let section = Section::new(study, pictures::convergence::draw(&measured));
+    Ok(Section { shown: vec![convergence::ORDERS], ..section })
 }
 
 /// The study of stiff springs.
 pub fn stiff_springs(_: &Reproduction) -> Result<Section, ReproductionError> {
-    Ok(stiff_springs::run(&stiff_springs::Settings::default(), SILENT)?.into())
+    let measured = stiff_springs::run(&stiff_springs::Settings::default(), SILENT)?;
+    Ok(Section::new(measured.study(), pictures::stiff_springs::draw(&measured)))
 }
 
 /// The statements of the paper, each with its verdict.
@@ -26,5 +30,5 @@ pub fn statements(reproduction: &Reproduction) -> Result<Section, ReproductionEr
     let audit = statements::run(reproduction.spring, &numbers, SILENT)?;
     let study = audit.study();
     let shown = study.tables.iter().map(|table| table.name).collect();
-    Ok(Section { shown, audit: Some(audit), ..study.into() })
+    Ok(Section { shown, audit: Some(audit), ..Section::new(study, Vec::new()) })
 }

@@ -77,7 +77,6 @@ impl Audit {
                     rows: evidence.collect(),
                 },
             ],
-            pictures: Vec::new(),
         }
     }
 

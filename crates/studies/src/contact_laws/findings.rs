@@ -1,11 +1,11 @@
 //! What the study says.
 
-use stickslip_figure::number;
 use stickslip_model::SpringEnergy;
+use stickslip_model::text::number;
 
-use super::Laws;
+use super::ContactLaws;
 
-impl Laws<'_> {
+impl ContactLaws {
     pub(super) fn findings(&self) -> Vec<String> {
         let count = self.laws.len();
         let cells = self.settings.cells;

@@ -11,7 +11,9 @@ use super::settings::{Named, Settings};
 use crate::error::StudyError;
 
 /// What was computed of one law.
+#[derive(Clone, Debug)]
 pub struct LawOnPlane {
+    /// The law with its names.
     pub named: Named,
     /// ε_t, row by row from the lower edge.
     pub eps_t: Vec<f64>,
@@ -19,15 +21,16 @@ pub struct LawOnPlane {
     pub difference: Vec<f64>,
     /// The numbers of switches.
     pub switches: Vec<i32>,
-    /// What the collisions have in common, without damping and with it.
+    /// What the collisions have in common without damping.
     pub undamped: Kinds,
+    /// What the collisions have in common with damping.
     pub damped: Kinds,
     /// The standard impact.
     pub standard: (Collision, History),
 }
 
 /// The kinds of collisions of a law in the window.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Kinds {
     /// The characters of their first phases.
     pub starts: BTreeSet<char>,
@@ -35,14 +38,14 @@ pub struct Kinds {
     pub parities: BTreeSet<usize>,
     /// The largest |ε_t|, with its κ and ψ.
     pub largest: (f64, [f64; 2]),
-    /// How many collisions there are, and how many of them have more tangential kinetic energy
-    /// after the contact than before.
+    /// How many collisions there are.
     pub collisions: usize,
+    /// How many of them have more tangential kinetic energy after the contact than before.
     pub gaining: usize,
 }
 
 impl LawOnPlane {
-    pub fn new(settings: &Settings, named: &Named) -> Result<Self, StudyError> {
+    pub(super) fn new(settings: &Settings, named: &Named) -> Result<Self, StudyError> {
         let (mut undamped, mut damped) = (Kinds::default(), Kinds::default());
         let points = settings.cells * settings.cells;
         let [mut eps_t, mut difference] = [const { Vec::new() }; 2];
@@ -71,11 +74,12 @@ impl LawOnPlane {
     }
 
     /// What becomes of the energy in the spring.
+    #[must_use]
     pub fn spring(&self) -> SpringEnergy {
         self.named.law.spring_energy()
     }
 
-    pub fn json(&self) -> Value {
+    pub(super) fn json(&self) -> Value {
         json!({
             "names": self.named.names,
             "law": self.named.law,
@@ -108,6 +112,7 @@ impl Kinds {
     }
 
     /// The parity of the numbers of switches.
+    #[must_use]
     pub fn parity(&self) -> &'static str {
         match (self.parities.contains(&0), self.parities.contains(&1)) {
             (true, false) => "even",
@@ -117,6 +122,7 @@ impl Kinds {
     }
 
     /// The regimes of the first phases.
+    #[must_use]
     pub fn starts(&self) -> String {
         let names = self.starts.iter().map(|first| match first {
             'o' => "stick",

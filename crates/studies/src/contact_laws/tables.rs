@@ -2,7 +2,7 @@
 
 use stickslip_model::{Damping, End};
 
-use super::Laws;
+use super::ContactLaws;
 use super::law::LawOnPlane;
 use crate::study::{Cell, Column, Table};
 
@@ -22,7 +22,7 @@ const COLUMNS: [Column; 10] = [
     Column::headed("largest_damped", "damped", "the largest |ε_t| with damping"),
 ];
 
-impl Laws<'_> {
+impl ContactLaws {
     pub(super) fn table(&self) -> Table {
         let (kappa, psi, cells) = (self.settings.kappa, self.settings.psi, self.settings.cells);
         Table {

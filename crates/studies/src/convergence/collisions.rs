@@ -33,9 +33,7 @@ pub struct PairAccuracy {
 }
 
 impl Accuracy {
-    /// # Errors
-    /// An integration fails.
-    pub fn new(reference: &Collision) -> Result<Self, CollisionFailure> {
+    pub(super) fn new(reference: &Collision) -> Result<Self, CollisionFailure> {
         let accuracy = |pair| {
             PairAccuracy::new(pair, reference)
                 .map_err(|source| CollisionFailure::new(&reference.contact, source))
@@ -44,7 +42,7 @@ impl Accuracy {
         Ok(Self { reference: reference.clone(), pairs: [dopri5?, dop853?] })
     }
 
-    pub fn json(&self) -> Value {
+    pub(super) fn json(&self) -> Value {
         let Self { reference, pairs } = self;
         let contact = &reference.contact;
         json!({

@@ -3,7 +3,7 @@
 use stickslip_solver::EmbeddedPair;
 use stickslip_solver::method::Order;
 
-use super::Measurement;
+use super::Convergence;
 use super::collisions::engine;
 use super::measure::Coordinates;
 use super::series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
@@ -15,8 +15,8 @@ const FEW_STEPS: f64 = 50.0;
 /// A method keeps its order if the fitted order is closer to it than this.
 const KEPT: f64 = 0.5;
 
-impl Measurement {
-    pub fn findings(&self) -> Vec<String> {
+impl Convergence {
+    pub(super) fn findings(&self) -> Vec<String> {
         let mut findings = vec![self.result(), self.measured()];
         for switches in [SwitchHandling::Located, SwitchHandling::AtStepEnds] {
             for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
@@ -31,7 +31,7 @@ impl Measurement {
     }
 
     /// The main result.
-    pub fn result(&self) -> String {
+    pub(super) fn result(&self) -> String {
         let smooth = (Control::Step, SwitchHandling::Located, Coordinates::Regularized);
         let fitted = self.both(smooth.0, smooth.1, smooth.2).map(|series| series.velocity);
         let [Some(dopri5), Some(dop853)] = fitted else {

@@ -29,23 +29,31 @@ const QUICK: Duration = Duration::from_millis(5);
 /// Whether switches are located, which ends steps there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SwitchHandling {
+    /// A switch ends the step in which it is.
     Located,
+    /// A switch takes effect where a step happens to end.
     AtStepEnds,
 }
 
 /// What decides how fine the steps are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
+    /// The size of the steps.
     Step,
+    /// The tolerance of a step.
     Tolerance,
 }
 
 /// A way to integrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
+    /// The method.
     pub pair: EmbeddedPair,
+    /// The variables.
     pub coordinates: Coordinates,
+    /// What happens to switches.
     pub switches: SwitchHandling,
+    /// What decides how fine the steps are.
     pub control: Control,
 }
 
@@ -61,6 +69,7 @@ pub struct ErrorRow {
 }
 
 /// The steps or tolerances to which `order` was fitted.
+#[must_use]
 pub fn fitted(order: &Order) -> RangeInclusive<f64> {
     order.finest * (1.0 - 1e-9)..=order.coarsest * (1.0 + 1e-9)
 }
@@ -68,7 +77,9 @@ pub fn fitted(order: &Order) -> RangeInclusive<f64> {
 /// The errors of a scheme from coarse to fine.
 #[derive(Clone, Debug)]
 pub struct ErrorSeries {
+    /// The way to integrate.
     pub scheme: Scheme,
+    /// The errors at each step or tolerance.
     pub rows: Vec<ErrorRow>,
     /// The order of the error of the final velocity, where there is a range to fit.
     pub velocity: Option<Order>,
@@ -77,6 +88,8 @@ pub struct ErrorSeries {
 }
 
 impl Control {
+    /// The name of what decides, as files have it.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Step => "step",
@@ -88,7 +101,7 @@ impl Control {
 impl Scheme {
     /// All schemes that are compared. Without located switches no error estimate could control the
     /// steps.
-    pub fn all() -> Vec<Self> {
+    pub(super) fn all() -> Vec<Self> {
         let ways = [
             (Control::Step, SwitchHandling::Located),
             (Control::Step, SwitchHandling::AtStepEnds),
@@ -105,6 +118,7 @@ impl Scheme {
     }
 
     /// The names of the method, of the coordinates and of what happens to switches.
+    #[must_use]
     pub fn names(self) -> [&'static str; 3] {
         let coordinates = match self.coordinates {
             Coordinates::Regularized => "regularised",
@@ -118,7 +132,7 @@ impl Scheme {
     }
 
     /// The steps or tolerances, from coarse to fine.
-    pub fn values(self, references: &[Collision]) -> Vec<f64> {
+    pub(super) fn values(self, references: &[Collision]) -> Vec<f64> {
         if self.control == Control::Tolerance {
             let powers = PER_DECADE..=15 * PER_DECADE;
             return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
@@ -173,7 +187,7 @@ fn coarsest(references: &[Collision]) -> f64 {
 }
 
 impl ErrorRow {
-    pub fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
+    pub(super) fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
         let switching = scheme.switching(value, coarsest(references));
         let once = || measure(scheme.pair, references, scheme.coordinates, &switching);
         let start = Instant::now();
@@ -204,7 +218,7 @@ impl ErrorRow {
 }
 
 impl ErrorSeries {
-    pub fn new(scheme: Scheme, rows: Vec<ErrorRow>) -> Self {
+    pub(super) fn new(scheme: Scheme, rows: Vec<ErrorRow>) -> Self {
         let fit = |error: fn(&Errors) -> Spread| {
             let errors = rows.iter().map(|ErrorRow { value, errors, .. }| {
                 let error = error(errors).root_mean_square;
@@ -216,7 +230,7 @@ impl ErrorSeries {
         Self { scheme, rows, velocity, switch_time }
     }
 
-    pub fn json(&self) -> Value {
+    pub(super) fn json(&self) -> Value {
         let order = |order: &Option<Order>| {
             order.map(|order| {
                 json!({

@@ -2,7 +2,7 @@
 
 use stickslip_solver::EmbeddedPair;
 
-use super::Measurement;
+use super::Convergence;
 use super::measure::Errors;
 use super::series::{Control, ErrorRow, ErrorSeries, Scheme};
 use crate::study::{Cell, Column, Table};
@@ -12,8 +12,8 @@ pub const ORDERS: &str = "convergence_orders";
 /// The table of measured times, the only one that differs from run to run.
 pub const TIMES: &str = "convergence_time";
 
-impl Measurement {
-    pub fn tables(&self) -> Vec<Table> {
+impl Convergence {
+    pub(super) fn tables(&self) -> Vec<Table> {
         vec![
             self.orders(),
             self.errors(Control::Step),
@@ -88,6 +88,7 @@ impl Measurement {
     }
 
     /// Evaluations of the right-hand side for each collision that was integrated.
+    #[must_use]
     pub fn work(&self, errors: &Errors) -> f64 {
         errors.right_hand_sides as f64 / (self.references.len() - errors.failed) as f64
     }

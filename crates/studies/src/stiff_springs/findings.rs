@@ -1,13 +1,13 @@
 //! What was found, in sentences with their numbers.
 
-use super::Measurement;
+use super::StiffSprings;
 use super::fit::{Estimate, Fits};
 use super::limit::BOUND_FACTOR;
 use super::maxima::LargestRestitution;
 use super::profile::{ComparedCollision, Profile};
 
-impl Measurement {
-    pub fn headlines(&self) -> Vec<String> {
+impl StiffSprings {
+    pub(super) fn headlines(&self) -> Vec<String> {
         let excess = &self.excess;
         let bound = format!(
             "The bound (27) of the paper lacks a factor (5/4)^{{3/5}} = {BOUND_FACTOR:.4}: |ε_t| \
@@ -17,7 +17,7 @@ impl Measurement {
         self.fits.as_ref().map(|fits| self.result(fits)).into_iter().chain([bound]).collect()
     }
 
-    pub fn findings(&self) -> Vec<String> {
+    pub(super) fn findings(&self) -> Vec<String> {
         let mut findings = Vec::new();
         findings.extend(self.fits.as_ref().map(|fits| self.result(fits)));
         findings.push(self.envelope_found());

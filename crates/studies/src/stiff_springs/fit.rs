@@ -37,13 +37,15 @@ pub struct Fits {
 /// A value with its uncertainty.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Estimate {
+    /// The value.
     pub value: f64,
+    /// Its uncertainty.
     pub uncertainty: f64,
 }
 
 impl Fits {
     /// The fits to the highest of the tops at each stiffness; `velocities` are by ψ, then by κ.
-    pub fn new(velocities: &[Vec<LargestVelocity>]) -> Option<Self> {
+    pub(super) fn new(velocities: &[Vec<LargestVelocity>]) -> Option<Self> {
         let mut tops: Vec<(f64, f64)> = Vec::new();
         let mut spread = 0.0_f64;
         for (index, LargestVelocity { kappa, .. }) in velocities.first()?.iter().enumerate() {

@@ -18,7 +18,9 @@ const FINE: f64 = 40.0;
 /// The largest |w_final| at one stiffness and around one ψ, and the switches there.
 #[derive(Clone, Debug)]
 pub struct LargestVelocity {
+    /// The stiffness.
     pub kappa: f64,
+    /// The impact ratio.
     pub psi: f64,
     /// The top of the oscillation around ψ.
     pub crest: Crest,
@@ -34,9 +36,7 @@ pub struct LargestVelocity {
 }
 
 impl LargestVelocity {
-    /// # Errors
-    /// A collision cannot be computed.
-    pub fn measure(kappa: f64, psi: f64) -> Result<Self, StudyError> {
+    pub(super) fn measure(kappa: f64, psi: f64) -> Result<Self, StudyError> {
         let crest = limit::envelope(kappa, psi)?;
         let integrated = if kappa <= MOST_INTEGRATED { integrated(&crest)? } else { f64::NAN };
         let collision = exact::collide(contact(kappa, psi)?)?;
@@ -56,6 +56,7 @@ impl LargestVelocity {
     }
 
     /// κ^{5/4} |w_final| at the top.
+    #[must_use]
     pub fn scaled(&self) -> f64 {
         self.crest.velocity * self.kappa.powf(1.25)
     }
@@ -101,6 +102,7 @@ impl RangeStart {
     pub const ALL: [Self; 3] = [Self::Bound(1.0), Self::Bound(10.0), Self::Psi(0.3)];
 
     /// The start as a formula.
+    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::Bound(1.0) => "1/√κ".to_owned(),
@@ -120,7 +122,9 @@ impl RangeStart {
 /// The largest |ε_t| of a range of ψ up to 2.
 #[derive(Clone, Debug)]
 pub struct LargestRestitution {
+    /// The stiffness.
     pub kappa: f64,
+    /// Where the range starts.
     pub start: RangeStart,
     /// The ψ at which the range starts.
     pub lowest: f64,
@@ -129,9 +133,7 @@ pub struct LargestRestitution {
 }
 
 impl LargestRestitution {
-    /// # Errors
-    /// A collision cannot be computed.
-    pub fn measure(kappa: f64, start: RangeStart) -> Result<Self, StudyError> {
+    pub(super) fn measure(kappa: f64, start: RangeStart) -> Result<Self, StudyError> {
         let lowest = start.psi(kappa);
         let largest =
             (lowest < 2.0).then(|| limit::largest_restitution(kappa, lowest)).transpose()?;
@@ -139,6 +141,7 @@ impl LargestRestitution {
     }
 
     /// The largest |ε_t|; NaN if the range is empty.
+    #[must_use]
     pub fn eps_t(&self) -> f64 {
         self.largest.map_or(f64::NAN, |crest| crest.velocity / crest.psi)
     }

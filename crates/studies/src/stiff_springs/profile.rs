@@ -25,17 +25,20 @@ pub struct Profile {
     pub peak_phase: f64,
     /// The phase at which F is 0.
     pub zero_phase: f64,
+    /// F over one oscillation.
     pub curve: Vec<CurvePoint>,
     /// Full collisions, by stiffness.
     pub compared: Vec<Vec<ComparedCollision>>,
     /// The ψ around which these collisions are.
     pub compared_psi: f64,
+    /// How F converges with the start and the number of coefficients.
     pub convergence: Vec<OtherStart>,
 }
 
 /// A point of the curve F(phase).
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
+    /// The phase of the last onset.
     pub phase: f64,
     /// σ where the last stick phase starts.
     pub last_onset: f64,
@@ -46,7 +49,9 @@ pub struct CurvePoint {
 /// A full collision beside the curve.
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedCollision {
+    /// The stiffness.
     pub kappa: f64,
+    /// The impact ratio.
     pub psi: f64,
     /// The phase of its last onset, in the range of the curve.
     pub phase: f64,
@@ -62,16 +67,16 @@ pub struct ComparedCollision {
 /// F computed from another start, or with fewer coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct OtherStart {
+    /// σ where the recursion starts.
     pub start: f64,
+    /// The number of coefficients of the expansion at the start.
     pub coefficients: usize,
     /// The largest difference from F.
     pub difference: f64,
 }
 
 impl Profile {
-    /// # Errors
-    /// A collision cannot be computed.
-    pub fn measure(settings: &Settings) -> Result<Self, StudyError> {
+    pub(super) fn measure(settings: &Settings) -> Result<Self, StudyError> {
         // An onset at the end itself is not one; this close to the end F is 1e-13.
         let zero_phase = within(inner::phase(1e-30), 1.0);
         let nearest =

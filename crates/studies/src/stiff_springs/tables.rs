@@ -1,14 +1,14 @@
 //! The study as tables.
 
-use super::Measurement;
+use super::StiffSprings;
 use super::limit::BOUND_FACTOR;
 use super::maxima::{LargestRestitution, LargestVelocity};
 use super::profile::{ComparedCollision, CurvePoint, OtherStart};
 use crate::study::Cell::Number;
 use crate::study::{Cell, Column, Table};
 
-impl Measurement {
-    pub fn tables(&self) -> Vec<Table> {
+impl StiffSprings {
+    pub(super) fn tables(&self) -> Vec<Table> {
         let velocities = || self.velocities.iter().flatten();
         let peak = self.peak.velocity;
         let Self { profile, restitutions, .. } = self;

@@ -164,6 +164,13 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         }
     }
 
+    /// Gives each region that no curve bounds the label that `label` finds at its sample point.
+    pub fn label_rest(&mut self, label: impl Fn(&Point) -> Option<Label>) {
+        for region in self.regions.iter_mut().filter(|region| region.label.is_none()) {
+            region.label = label(&region.sample);
+        }
+    }
+
     /// Adds the findings about ends, sides and labels of curves, and about regions.
     fn find_inconsistencies(&mut self) {
         let mut degrees = vec![0_usize; self.vertices.len() + 4];

@@ -73,7 +73,7 @@ fn of_curve<F: Family>(
         let guess = own.nodes.iter().map(|node| node.point).sum::<Point>() / count;
         let distances = own.nodes.iter().map(|node| (node.point - guess).norm());
         let distance = distances.fold(0.0, f64::max);
-        found.push(Candidate { conditions: Conditions::Flat(own.margin.clone()), guess, distance });
+        found.push(Candidate { conditions: Conditions::flat(&own.margin), guess, distance });
         return;
     };
     let along = Condition::Margin(own.margin.clone());
@@ -97,13 +97,13 @@ fn of_merging<F: Family>(
         found.push(Candidate { conditions, guess, distance });
     };
     if let Some(margins) = family.swallowtail(margin) {
-        push(Conditions::Merged(margins), ends[0].lerp(&ends[1], 0.5));
+        push(Conditions::swallowtail(margins), ends[0].lerp(&ends[1], 0.5));
     }
     for pair in family.cusps(margin) {
         let [one, two] = pair.map(Condition::Margin);
         for (others, guess) in at_ends.iter().zip([ends[1], ends[0]]) {
-            for other in others {
-                push(Conditions::Three([one.clone(), two.clone(), other.clone()]), guess);
+            for other in others.iter().filter(|other| **other != two) {
+                push(Conditions::of(&one, [&two, other]), guess);
             }
         }
     }
@@ -121,7 +121,7 @@ fn reconnection<Label, Margin: Clone + PartialEq>(
     let pairs = one.nodes.iter().flat_map(|a| other.nodes.iter().map(move |b| [a.point, b.point]));
     let nearest = pairs.map(|[a, b]| ((b - a).norm(), a.lerp(&b, 0.5)));
     if let Some((distance, guess)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        let conditions = Conditions::Flat(one.margin.clone());
+        let conditions = Conditions::flat(&one.margin);
         found.push(Candidate { conditions, guess, distance });
     }
 }
@@ -138,7 +138,7 @@ fn push<Margin: Clone + PartialEq>(
     for first in &at_ends[0] {
         for second in &at_ends[1] {
             let corners = [along, first, second];
-            if corners.iter().all(|condition| matches!(condition, Condition::Side(_))) {
+            if corners.iter().all(|condition| condition.is_side()) {
                 continue;
             }
             let conditions = Conditions::of(along, [first, second]);

@@ -38,6 +38,17 @@ pub enum Effect<Label> {
 }
 
 impl<Label> Effect<Label> {
+    /// The same effect with another label.
+    #[must_use]
+    pub fn map<L>(&self, label: impl Fn(&Label) -> L) -> Effect<L> {
+        match self {
+            Self::Born(own) => Effect::Born(label(own)),
+            Self::Dies(own) => Effect::Dies(label(own)),
+            Self::Merge(own) => Effect::Merge(label(own)),
+            Self::Splits(own) => Effect::Splits(label(own)),
+        }
+    }
+
     /// `born`, `dies`, `merge` or `splits`.
     #[must_use]
     pub const fn name(&self) -> &'static str {
@@ -65,6 +76,26 @@ impl<Label> Change<Label> {
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
         self.doubtful || self.meeting.is_none()
+    }
+
+    /// What is in doubt, in one sentence; `over` is what the atlases differ in, in the plural.
+    #[must_use]
+    pub fn objection(&self, over: &str) -> Option<String> {
+        let [low, high] = self.between;
+        let what = if self.meeting.is_some() {
+            "several changes may lie between the"
+        } else {
+            "nothing is known of what changes between the"
+        };
+        self.is_doubtful().then(|| format!("{what} {over} {low:?} and {high:?}"))
+    }
+
+    /// The same change with other labels.
+    #[must_use]
+    pub fn map<L>(&self, label: impl Fn(&Label) -> L) -> Change<L> {
+        let Self { between, meeting, doubtful, effects } = self;
+        let effects = effects.iter().map(|effect| effect.map(&label)).collect();
+        Change { between: *between, meeting: *meeting, doubtful: *doubtful, effects }
     }
 }
 

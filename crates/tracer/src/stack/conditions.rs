@@ -10,23 +10,17 @@ pub(super) enum Condition<Margin> {
     Margin(Margin),
     /// The distance from a side of the window, counterclockwise from the lower one.
     Side(usize),
+    /// The angle between the boundaries of two conditions in the plane.
+    Angle(Box<[Condition<Margin>; 2]>),
+    /// The slope of a margin along an axis of the plane.
+    Slope(Margin, usize),
 }
 
 /// Three conditions for a place in the plane and a value of the third parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Conditions<Margin> {
-    /// All three vanish.
-    Three([Condition<Margin>; 3]),
-    /// Both vanish, and their gradients in the plane are parallel.
-    Parallel([Condition<Margin>; 2]),
-    /// The first two vanish, and the gradients of the second and the third are parallel: the third
-    /// is known to touch the second there, and its value would determine the place to half the
-    /// digits only.
-    Tangent([Condition<Margin>; 3]),
-    /// A margin vanishes together with its gradient in the plane.
-    Flat(Margin),
-    /// All three margins vanish, and with them three extrema merge on their zero.
-    Merged([Margin; 3]),
+pub(super) struct Conditions<Margin> {
+    pub kind: MeetingKind,
+    pub three: [Condition<Margin>; 3],
 }
 
 /// What happens at a value of the third parameter where the structure changes.
@@ -70,55 +64,72 @@ impl MeetingKind {
 impl<Margin: Clone + PartialEq> Conditions<Margin> {
     /// The conditions for the ends of a stretch of the arrangement to meet: what vanishes along it,
     /// and what else vanishes at its ends.
-    pub fn of(along: &Condition<Margin>, ends: [&Condition<Margin>; 2]) -> Self {
-        let [first, second] = ends;
-        if first == second {
-            Self::Parallel([along.clone(), first.clone()])
+    pub fn of(along: &Condition<Margin>, [first, second]: [&Condition<Margin>; 2]) -> Self {
+        let angle = Condition::Angle(Box::new([along.clone(), first.clone()]));
+        let (kind, third) = if first != second {
+            let sides = [along, first, second].into_iter().filter(|one| one.is_side()).count();
+            let kinds = [MeetingKind::Crossing, MeetingKind::Edge, MeetingKind::Corner];
+            (kinds[sides.min(2)], second.clone())
+        } else if along.is_side() || first.is_side() {
+            (MeetingKind::EdgeTouch, angle)
         } else {
-            Self::Three([along, first, second].map(Clone::clone))
-        }
+            (MeetingKind::Touch, angle)
+        };
+        Self { kind, three: [along.clone(), first.clone(), third] }
     }
 
-    /// What happens where the conditions hold.
-    pub fn kind(&self) -> MeetingKind {
-        let sides = |conditions: &[Condition<Margin>]| {
-            conditions.iter().filter(|one| matches!(one, Condition::Side(_))).count()
-        };
-        match self {
-            Self::Three(conditions) | Self::Tangent(conditions) => match sides(conditions) {
-                0 => MeetingKind::Crossing,
-                1 => MeetingKind::Edge,
-                _ => MeetingKind::Corner,
-            },
-            Self::Parallel(conditions) if sides(conditions) == 0 => MeetingKind::Touch,
-            Self::Parallel(_) => MeetingKind::EdgeTouch,
-            Self::Flat(_) => MeetingKind::Flat,
-            Self::Merged(_) => MeetingKind::Swallowtail,
-        }
+    /// The conditions for a boundary to shrink to a point, or to reconnect: a margin vanishes
+    /// together with its gradient in the plane.
+    pub fn flat(margin: &Margin) -> Self {
+        let slope = |axis| Condition::Slope(margin.clone(), axis);
+        let three = [Condition::Margin(margin.clone()), slope(0), slope(1)];
+        Self { kind: MeetingKind::Flat, three }
     }
 
-    fn each_margin(&mut self, mut change: impl FnMut(&mut Margin)) {
-        let mut all = |conditions: &mut [Condition<Margin>]| {
-            for condition in conditions {
-                if let Condition::Margin(margin) = condition {
-                    change(margin);
-                }
-            }
-        };
-        match self {
-            Self::Three(conditions) | Self::Tangent(conditions) => all(conditions),
-            Self::Parallel(conditions) => all(conditions),
-            Self::Flat(margin) => change(margin),
-            Self::Merged(margins) => margins.iter_mut().for_each(change),
-        }
+    /// The conditions for three extrema to merge on their zero.
+    pub fn swallowtail(margins: [Margin; 3]) -> Self {
+        Self { kind: MeetingKind::Swallowtail, three: margins.map(Condition::Margin) }
+    }
+
+    /// The same point, where one of two boundaries is known to touch the other: their angle in the
+    /// place of the value of one of them, which determines the place to half the digits only.
+    pub fn touching(&self, [kept, touching]: [usize; 2]) -> Self {
+        let [kept, rest] = [kept, 3 - kept - touching].map(|index| self.three[index].clone());
+        let angle = Box::new([kept.clone(), self.three[touching].clone()]);
+        Self { kind: self.kind, three: [rest, kept, Condition::Angle(angle)] }
+    }
+
+    /// Whether values of margins and distances vanish, and nothing else.
+    pub fn are_values(&self) -> bool {
+        let is_value = |one: &_| matches!(one, Condition::Margin(_) | Condition::Side(_));
+        self.three.iter().all(is_value)
+    }
+
+    /// Whether three boundaries, or sides of the window, pass through the point.
+    pub fn are_boundaries(&self) -> bool {
+        self.are_values() && self.kind != MeetingKind::Swallowtail
     }
 
     /// Updates the names of margins, which may contain places of minima.
     pub fn move_to<F: Family<Margin = Margin>>(&mut self, family: &F, point: &Point) {
-        self.each_margin(|margin| {
-            if let Ok(moved) = family.moved(point, margin) {
-                *margin = moved;
+        self.three.iter_mut().for_each(|condition| condition.move_to(family, point));
+    }
+}
+
+impl<Margin> Condition<Margin> {
+    pub const fn is_side(&self) -> bool {
+        matches!(self, Self::Side(_))
+    }
+
+    fn move_to<F: Family<Margin = Margin>>(&mut self, family: &F, point: &Point) {
+        match self {
+            Self::Margin(margin) | Self::Slope(margin, _) => {
+                if let Ok(moved) = family.moved(point, margin) {
+                    *margin = moved;
+                }
             }
-        });
+            Self::Side(_) => {}
+            Self::Angle(two) => two.iter_mut().for_each(|one| one.move_to(family, point)),
+        }
     }
 }

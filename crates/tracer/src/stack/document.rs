@@ -3,8 +3,11 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use stickslip_solver::margin::Margin;
 
 use crate::atlas::AtlasOptions;
+use crate::hybrid::Itinerary;
+use crate::names::{Names, RunNames};
 use crate::stack::change::Change;
 use crate::stack::{Layer, Stack, StackOptions};
 use crate::window::Window;
@@ -58,8 +61,8 @@ pub struct LayerDocument<Label> {
 
 impl<Label: Clone + Ord + std::fmt::Debug> StackDocument<Label> {
     /// The document of a stack that was made with `options`.
-    pub fn new<Margin: Clone + PartialEq>(
-        stack: &Stack<Label, Margin>,
+    pub fn new<M: Clone + PartialEq>(
+        stack: &Stack<Label, M>,
         options: &StackOptions,
         family: &str,
         axes: [&str; 3],
@@ -80,8 +83,22 @@ impl<Label: Clone + Ord + std::fmt::Debug> StackDocument<Label> {
     }
 }
 
+impl StackDocument<Itinerary> {
+    /// The document of a stack of a hybrid system over its parameter `over`.
+    #[must_use]
+    pub fn of_runs(
+        stack: &Stack<Itinerary, Margin>,
+        options: &StackOptions,
+        names: &RunNames,
+        over: &str,
+    ) -> Self {
+        let ([x, y], guards) = (names.axes(), names.guards.clone());
+        Self { guards, ..Self::new(stack, options, &names.family, [x, y, over]) }
+    }
+}
+
 impl<Label: Clone + Ord> LayerDocument<Label> {
-    fn new<Margin: Clone>(layer: &Layer<Label, Margin>) -> Self {
+    fn new<M: Clone>(layer: &Layer<Label, M>) -> Self {
         let plane = &layer.atlas.plane;
         let mut regions = BTreeMap::new();
         for region in plane.regions() {

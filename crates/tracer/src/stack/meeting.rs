@@ -1,9 +1,14 @@
 //! Where codimension-2 points meet: the place, and the value of the third parameter.
 
+use std::convert::Infallible;
+
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
+use crate::conditions::{self, Limits, Unsolved, Zero};
 use crate::family::Family;
 use crate::inverse;
+use crate::lengths::of_stack::{LONG_STEP, PASSAGE, STEP, STRIDE};
+use crate::lengths::{Lengths, angle};
 use crate::stack::conditions::{Condition, Conditions, MeetingKind};
 use crate::window::{Point, Window};
 
@@ -45,29 +50,20 @@ impl Box3 {
 
     /// Whether the family is defined there: up to a hundredth of the window beyond its edges.
     fn is_defined(unknowns: &Vector3<f64>) -> bool {
-        unknowns.xy().iter().all(|part| (-0.01..=1.01).contains(part))
+        let beyond = Lengths::PARTS.beyond;
+        unknowns.xy().iter().all(|part| (-beyond..=1.0 + beyond).contains(part))
     }
 }
 
-/// A step of a difference of values, as a part of the box. If values have an error of 1e-14, the
-/// slope is good to 1e-9.
-const STEP: f64 = 1e-5;
-/// A step of a difference of slopes.
-const LONG_STEP: f64 = 1e-3;
-
-/// The place and the value near a guess at which the conditions hold, by Newton's method in all
-/// three unknowns; `None` if there is none in the box, or if a margin ceases to exist on the way.
+/// The place and the value near a guess at which the conditions hold; `None` if there is none in
+/// the box, or if a margin ceases to exist on the way.
 pub(super) fn solve<F: Family>(
     family: &impl Fn(f64) -> F,
-    mut conditions: Conditions<F::Margin>,
+    conditions: Conditions<F::Margin>,
     guess: (Point, f64),
     within: &Box3,
 ) -> Option<Solved<F::Margin>> {
-    let start = within.unknowns(&guess.0, guess.1);
-    match newton(family, &mut conditions, start, within)? {
-        Reached::Sure(at) => meeting(&conditions, &at, within).map(Solved::Sure),
-        Reached::Vague(at) => Some(Solved::Vague(Vague { conditions, at })),
-    }
+    newton(family, conditions, within.unknowns(&guess.0, guess.1), within)
 }
 
 /// What a search for a meeting finds.
@@ -94,86 +90,53 @@ pub(super) fn touching<F: Family>(
     vague: &Vague<F::Margin>,
     within: &Box3,
 ) -> Option<Meeting> {
-    let mut conditions = tangent(family, &vague.conditions, &vague.at, within)?;
-    match newton(family, &mut conditions, vague.at, within)? {
-        Reached::Sure(at) => meeting(&conditions, &at, within),
-        Reached::Vague(_) => None,
+    let conditions = tangent(family, &vague.conditions, &vague.at, within)?;
+    match newton(family, conditions, vague.at, within)? {
+        Solved::Sure(meeting) => Some(meeting),
+        Solved::Vague(_) => None,
     }
 }
 
 /// The meeting at a place, if that is in the box.
-fn meeting<Margin: Clone + PartialEq>(
-    conditions: &Conditions<Margin>,
-    at: &Vector3<f64>,
-    within: &Box3,
-) -> Option<Meeting> {
-    let kind = conditions.kind();
-    let inside =
-        at.xy().iter().all(|part| (-1e-6..=1.0 + 1e-6).contains(part)) && at.z > 0.0 && at.z < 1.0;
+fn meeting(kind: MeetingKind, at: &Vector3<f64>, within: &Box3) -> Option<Meeting> {
+    let slack = Lengths::PARTS.piece;
+    let inside = at.xy().iter().all(|part| (-slack..=1.0 + slack).contains(part))
+        && at.z > 0.0
+        && at.z < 1.0;
     // On the edge of the window, the place is beside it by rounding.
     let at = at.map(|part| part.clamp(0.0, 1.0));
     inside.then(|| Meeting { kind, value: within.value(&at), point: within.point(&at) })
 }
 
-/// Where Newton's method ends.
-enum Reached {
-    /// At a simple zero.
-    Sure(Vector3<f64>),
-    /// Where the conditions nearly hold, but nearly depend on each other too.
-    Vague(Vector3<f64>),
-}
-
 fn newton<F: Family>(
     family: &impl Fn(f64) -> F,
-    conditions: &mut Conditions<F::Margin>,
-    mut at: Vector3<f64>,
+    mut conditions: Conditions<F::Margin>,
+    start: Vector3<f64>,
     within: &Box3,
-) -> Option<Reached> {
-    /// Updates below this part of the box end the search, if they shrink as the square: the next
-    /// one would be beyond the digits.
-    const SMALL: f64 = 1e-7;
-    /// The greatest part of the update before that is taken for such a square.
-    const SQUARE: f64 = 0.1;
-    /// Updates below this part of the box are rounding.
-    const ROUNDING: f64 = 1e-12;
-    /// The last update from which a vague place is looked at once more.
-    const NEAR: f64 = 1e-3;
-    conditions.move_to(&family(within.value(&at)), &within.point(&at));
-    let mut update = Vector3::zeros();
-    let mut last = f64::NAN;
-    for _ in 0..30 {
-        let values = Box3::is_defined(&at).then(|| residuals(family, conditions, &at, within));
-        let Some(values) = values.flatten() else {
-            // A margin does not exist here, as at the far side of the boundary where it ends.
-            update *= 0.5;
-            at += update;
-            at.z = at.z.clamp(0.0, 1.0);
-            if update.norm() < SMALL {
-                return None;
-            }
-            continue;
-        };
-        let slopes = slopes(family, conditions, &at, within)?;
-        update = inverse::of_three(&slopes)? * values;
-        let size = update.norm();
-        let finite = size.is_finite();
-        if !finite {
-            return None;
-        }
-        // A long step is only a direction.
-        update *= (0.2 / size).min(1.0);
-        at -= update;
+) -> Option<Solved<F::Margin>> {
+    let Lengths { half, least, .. } = Lengths::PARTS;
+    let limits = Limits::new(f64::INFINITY, least);
+    let limits = Limits { stride: STRIDE, square: half, retreat: half, rounds: 30, ..limits };
+    let Ok(found) = conditions::solve(&start, &limits, |at, _| {
         at.z = at.z.clamp(0.0, 1.0);
-        if size < SMALL && (size < SQUARE * last || size < ROUNDING) && independent(&slopes) {
-            return is_passage(family, conditions, (&at, &slopes), within)
-                .then_some(Reached::Sure(at));
+        if !Box3::is_defined(at) {
+            return Ok::<_, Infallible>(None);
         }
-        last = size;
-        if Box3::is_defined(&at) {
-            conditions.move_to(&family(within.value(&at)), &within.point(&at));
+        conditions.move_to(&family(within.value(at)), &within.point(at));
+        let values = residuals(family, &conditions, at, within);
+        Ok(values.map(|values| (values, slopes(family, &conditions, at, within))))
+    });
+    match found {
+        Ok(Zero { at, slopes, .. }) if independent(&slopes) => {
+            let meets = is_passage(family, &conditions, (&at, &slopes), within);
+            meets.then(|| meeting(conditions.kind, &at, within))?.map(Solved::Sure)
         }
+        Err(Unsolved::Slow { update, .. }) if update >= LONG_STEP => None,
+        Ok(Zero { at, .. }) | Err(Unsolved::Slow { at, .. }) => {
+            Some(Solved::Vague(Vague { conditions, at }))
+        }
+        Err(_) => None,
     }
-    (last < NEAR).then_some(Reached::Vague(at))
 }
 
 /// Whether the third of three conditions passes through zero where the first two hold, as its slope
@@ -187,9 +150,9 @@ fn is_passage<F: Family>(
     (at, slopes): (&Vector3<f64>, &Matrix3<f64>),
     within: &Box3,
 ) -> bool {
-    /// The change of the third unknown.
-    const PASSAGE: f64 = 1e-4;
-    let Conditions::Three(_) = conditions else { return true };
+    if !conditions.are_boundaries() {
+        return true;
+    }
     let mut told = [0, 0];
     for third in 0..3 {
         let pair = [(third + 1) % 3, (third + 2) % 3];
@@ -232,26 +195,21 @@ fn tangent<F: Family>(
     at: &Vector3<f64>,
     within: &Box3,
 ) -> Option<Conditions<F::Margin>> {
-    /// The greatest sine between boundaries that may touch close by.
-    const PARALLEL: f64 = 0.1;
-    let Conditions::Three(three) = conditions else { return None };
+    if !conditions.are_boundaries() {
+        return None;
+    }
     let here = Here { family: &family(within.value(at)), within };
-    let gradients = three.each_ref().map(|one| here.gradient(one, at));
+    let gradients = conditions.three.each_ref().map(|one| here.gradient(one, at));
     let pairs = [[0, 1], [1, 0], [0, 2], [2, 0], [1, 2], [2, 1]].into_iter().filter_map(|pair| {
         let [one, other] = pair.map(|index| gradients[index]);
         Some((one?.normalize().perp(&other?.normalize()).abs(), pair))
     });
-    let (sine, [kept, touching]) = pairs.min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let rest = 3 - kept - touching;
-    (sine < PARALLEL)
-        .then(|| Conditions::Tangent([rest, kept, touching].map(|index| three[index].clone())))
+    let (sine, pair) = pairs.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    (sine < angle::PARALLEL).then(|| conditions.touching(pair))
 }
 
 /// Whether conditions with these derivatives hold at one point only, and not along a curve.
 fn independent(slopes: &Matrix3<f64>) -> bool {
-    /// Three unit vectors with a smaller volume count as lying in a plane. Derivatives are good to
-    /// 1e-9, derivatives of slopes to 1e-6.
-    const LEAST: f64 = 1e-5;
     let mut unit = *slopes;
     for mut row in unit.row_iter_mut() {
         row.normalize_mut();
@@ -259,7 +217,7 @@ fn independent(slopes: &Matrix3<f64>) -> bool {
     for mut column in unit.column_iter_mut() {
         column.normalize_mut();
     }
-    unit.determinant().abs() > LEAST
+    unit.determinant().abs() > angle::PLANE
 }
 
 /// The derivatives of the residuals, by differences.
@@ -269,10 +227,7 @@ fn slopes<F: Family>(
     at: &Vector3<f64>,
     within: &Box3,
 ) -> Option<Matrix3<f64>> {
-    let step = match conditions {
-        Conditions::Three(_) | Conditions::Merged(_) => STEP,
-        Conditions::Parallel(_) | Conditions::Tangent(_) | Conditions::Flat(_) => LONG_STEP,
-    };
+    let step = if conditions.are_values() { STEP } else { LONG_STEP };
     let mut columns = [Vector3::zeros(); 3];
     for (axis, column) in columns.iter_mut().enumerate() {
         let along = Vector3::ith(axis, 1.0);
@@ -325,20 +280,30 @@ impl<F: Family> Here<'_, F> {
             Condition::Side(1) => Some(1.0 - at.x),
             Condition::Side(2) => Some(1.0 - at.y),
             Condition::Side(_) => Some(at.x),
+            Condition::Angle(two) => {
+                let [one, other] = two.each_ref().map(|condition| self.gradient(condition, at));
+                Some(one?.normalize().perp(&other?.normalize()))
+            }
+            Condition::Slope(margin, axis) => {
+                self.slope(&Condition::Margin(margin.clone()), *axis, at)
+            }
         }
     }
 
-    /// Its gradient in the plane, by differences.
-    fn gradient(&self, condition: &Condition<F::Margin>, at: &Vector3<f64>) -> Option<Point> {
+    /// Its slope along an axis, by differences.
+    fn slope(
+        &self,
+        condition: &Condition<F::Margin>,
+        axis: usize,
+        at: &Vector3<f64>,
+    ) -> Option<f64> {
         let value = |at: &Vector3<f64>| Some(Vector3::new(self.value(condition, at)?, 0.0, 0.0));
-        let slope = |axis| Some(difference(at, &Vector3::ith(axis, 1.0), STEP, false, value)?.x);
-        Some(Point::new(slope(0)?, slope(1)?))
+        Some(difference(at, &Vector3::ith(axis, 1.0), STEP, false, value)?.x)
     }
 
-    /// The sine of the angle between two boundaries.
-    fn sine(&self, pair: [&Condition<F::Margin>; 2], at: &Vector3<f64>) -> Option<f64> {
-        let [one, other] = pair.map(|condition| self.gradient(condition, at));
-        Some(one?.normalize().perp(&other?.normalize()))
+    /// Its gradient in the plane.
+    fn gradient(&self, condition: &Condition<F::Margin>, at: &Vector3<f64>) -> Option<Point> {
+        Some(Point::new(self.slope(condition, 0, at)?, self.slope(condition, 1, at)?))
     }
 }
 
@@ -350,25 +315,6 @@ fn residuals<F: Family>(
     within: &Box3,
 ) -> Option<Vector3<f64>> {
     let here = Here { family: &family(within.value(at)), within };
-    let value = |condition: &Condition<F::Margin>| here.value(condition, at);
-    match conditions {
-        Conditions::Three([one, two, three]) => {
-            Some(Vector3::new(value(one)?, value(two)?, value(three)?))
-        }
-        Conditions::Merged(margins) => {
-            let [one, two, three] = margins.clone().map(Condition::Margin);
-            Some(Vector3::new(value(&one)?, value(&two)?, value(&three)?))
-        }
-        Conditions::Parallel([one, two]) => {
-            Some(Vector3::new(value(one)?, value(two)?, here.sine([one, two], at)?))
-        }
-        Conditions::Tangent([one, two, three]) => {
-            Some(Vector3::new(value(one)?, value(two)?, here.sine([two, three], at)?))
-        }
-        Conditions::Flat(margin) => {
-            let margin = Condition::Margin(margin.clone());
-            let gradient = here.gradient(&margin, at)?;
-            Some(Vector3::new(value(&margin)?, gradient.x, gradient.y))
-        }
-    }
+    let [one, two, three] = conditions.three.each_ref().map(|one| here.value(one, at));
+    Some(Vector3::new(one?, two?, three?))
 }

@@ -14,6 +14,8 @@ use std::cell::Cell;
 
 use crate::executor::Executor;
 use crate::family::Family;
+use crate::lengths::Lengths;
+use crate::lengths::of_stack::{FAR, GAP, NARROW, UNSEEN};
 use crate::regions::region::Region;
 use crate::stack::candidates::candidates;
 use crate::stack::change::{Change, Effect};
@@ -61,8 +63,8 @@ pub(super) struct Search<'a, F: Family, At, E> {
     options: StackOptions,
     surveyor: Surveyor<'a, E>,
     watch: Watch<'a>,
-    /// The distance between the first value and the last one.
-    span: f64,
+    /// The first value and the last one.
+    range: [f64; 2],
     count: usize,
     cancelled: Cell<bool>,
     found: Vec<Found<F>>,
@@ -77,9 +79,6 @@ struct Tried<Label> {
     /// The values of atlases on both sides that are not in doubt, and their structure.
     around: Option<([f64; 2], Structure<Label>)>,
 }
-
-/// The distances from a meeting of atlases that are far from it, in widths.
-const FAR: [f64; 2] = [5.0, 50.0];
 
 /// How far from a meeting the atlases may be that differ.
 #[derive(Clone, Copy, PartialEq)]
@@ -97,7 +96,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         options: StackOptions,
         surveyor: Surveyor<'a, E>,
         watch: Watch<'a>,
-        span: f64,
+        range: [f64; 2],
     ) -> Self {
         Self {
             family,
@@ -105,7 +104,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             options,
             surveyor,
             watch,
-            span,
+            range,
             count: 0,
             cancelled: Cell::new(false),
             found: Vec::new(),
@@ -161,10 +160,12 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
 
     /// The width of a bracket that is narrow enough, around a value.
     fn width(&self, low: f64, high: f64) -> f64 {
-        /// The least width around 0, as a part of all values.
-        const LEAST: f64 = 1e-12;
         let width = self.options.width * low.abs().max(high.abs());
-        if low <= 0.0 && 0.0 <= high { width.max(LEAST * self.span) } else { width }
+        if low <= 0.0 && 0.0 <= high {
+            width.max(Lengths::PARTS.least * (self.range[1] - self.range[0]))
+        } else {
+            width
+        }
     }
 
     /// Finds the changes between two atlases that agree.
@@ -172,7 +173,11 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         let Some(differing) = low.structure.differing(&high.structure) else { return Ok(()) };
         if high.value - low.value <= self.width(low.value, high.value) {
             let mut change = Change::new([low, high], None, false);
-            if let Some((meeting, between)) = self.unseen(low, high, &change.effects, &differing) {
+            change.meeting = self.enclosed([low, high], &differing);
+            if change.meeting.is_none()
+                && let Some((meeting, between)) =
+                    self.unseen(low, high, &change.effects, &differing)
+            {
                 (change.meeting, change.between) = (Some(meeting), between);
             }
             self.found.push((change, high.structure.clone()));
@@ -196,7 +201,8 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         differing: &[Vec<usize>; 2],
         reach: Reach,
     ) -> Searched<bool, F> {
-        for meeting in self.meetings([low, high], differing, reach) {
+        let between = [low.value, high.value];
+        for meeting in self.meetings([low, high], differing, between, reach) {
             if self.isolated(low, high, &meeting, reach)? {
                 return Ok(true);
             }
@@ -204,17 +210,17 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         Ok(false)
     }
 
-    /// Where points may meet between two atlases, each value once.
+    /// Where points of two atlases may meet between two values, each value once.
     fn meetings(
         &self,
         ends: [&Sample<F>; 2],
         differing: &[Vec<usize>; 2],
+        values: [f64; 2],
         reach: Reach,
     ) -> Vec<Meeting> {
         /// The number of candidates of each atlas that are tried, and of solutions.
         const TRIED: usize = 60;
         const SOLVED: usize = 4;
-        let values = ends.map(|sample| sample.value);
         let within = Box3 { window: self.window, values };
         let near = self.width(values[0], values[1]);
         let (mut tried, mut vague) = (Vec::new(), Vec::new());
@@ -281,7 +287,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         };
         let mut around = None;
         // A value may be 0.
-        let least = 1e-2 * (high.value - low.value);
+        let least = Lengths::PARTS.beyond * (high.value - low.value);
         let width = self.options.width * meeting.value.abs().max(least);
         for part in widths {
             let below = self.beside(meeting.value - part * width, [low, high])?;
@@ -324,8 +330,6 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
     ) -> Searched<(), F> {
         /// Where the atlas may be, as parts of the interval.
         const PLACES: [f64; 4] = [0.5, 0.4, 0.65, 0.25];
-        /// The interval, in widths, in which an atlas far from a meeting may be.
-        const NARROW: f64 = 400.0;
         let width = self.width(low.value, high.value);
         let narrow = high.value - low.value <= NARROW * width;
         if narrow && self.solved(low, high, differing, Reach::Far)? {
@@ -358,6 +362,22 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         Ok(())
     }
 
+    /// The meeting between two atlases that differ and are as close to each other as those beside a
+    /// meeting are. It may be one beside which atlases were in doubt before.
+    fn enclosed(&self, ends: [&Sample<F>; 2], differing: &[Vec<usize>; 2]) -> Option<Meeting> {
+        /// How much farther it is looked for, in widths: differences of values close to each other
+        /// are too inaccurate.
+        const AROUND: f64 = 1000.0;
+        let [low, high] = ends.map(|sample| sample.value);
+        let is_between = |meeting: &Meeting| low < meeting.value && meeting.value < high;
+        let in_doubt = self.tried.iter().filter(|tried| tried.around.is_none());
+        let before = in_doubt.map(|tried| tried.meeting).find(is_between);
+        let around = AROUND * self.width(low, high);
+        let values = [(low - around).max(self.range[0]), (high + around).min(self.range[1])];
+        let again = || self.meetings(ends, differing, values, Reach::Close);
+        before.or_else(|| again().into_iter().find(is_between))
+    }
+
     /// A meeting beside a change that atlases have enclosed, and the bracket that holds both: a
     /// region that is born or dies there is too small to be seen in atlases that are closer to the
     /// meeting. Between the change and the meeting, the atlases have one structure.
@@ -368,16 +388,9 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         effects: &[Effect<F::Label>],
         differing: &[Vec<usize>; 2],
     ) -> Option<(Meeting, [f64; 2])> {
-        /// The greatest distance of the meeting, in widths, and as a part of the value; the smaller
-        /// one counts.
-        const FARTHEST: [f64; 2] = [400.0, 4e-3];
-        /// The greatest distance of the meeting from the region, and the greatest half width of the
-        /// region, as fractions of the window's shorter extent.
-        const BESIDE: f64 = 1e-3;
-        const SMALL: f64 = 1e-5;
         let greatest = low.value.abs().max(high.value.abs());
-        let near = (FARTHEST[0] * self.width(low.value, high.value)).min(FARTHEST[1] * greatest);
-        let scale = self.window.extent().min();
+        let near = (NARROW * self.width(low.value, high.value)).min(UNSEEN * greatest);
+        let Lengths { around: beside, close, .. } = Lengths::of(self.window.extent().min());
         let found = self.tried.iter().filter_map(|Tried { meeting, around, .. }| {
             let (between, structure) = around.as_ref()?;
             let dies = meeting.value > high.value;
@@ -387,8 +400,8 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
                 let label = seen.structure.label(region).clone();
                 let effect = if dies { Effect::Dies(label) } else { Effect::Born(label) };
                 let Region { sample, clearance, .. } = &seen.atlas.plane.regions()[region];
-                *clearance <= SMALL * scale
-                    && (sample - meeting.point).norm() <= BESIDE * scale
+                *clearance <= close
+                    && (sample - meeting.point).norm() <= beside
                     && effects.contains(&effect)
             };
             let gap = if dies { meeting.value - high.value } else { low.value - meeting.value };
@@ -412,8 +425,6 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
     /// for: the structure changes there in steps too small to show whether there is one change or
     /// several.
     pub fn joined(mut self) -> Vec<Found<F>> {
-        /// The greatest gap between brackets that are joined, in widths.
-        const GAP: f64 = 10.0;
         let found = std::mem::take(&mut self.found);
         let is_one = |one: &Change<F::Label>, other: &Change<F::Label>| {
             let [low, high] = other.between;

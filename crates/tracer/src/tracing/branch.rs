@@ -21,7 +21,7 @@ use crate::options::TraceError;
 use crate::tracing::branch::step::Attempt;
 use crate::tracing::branch::touch::touch;
 use crate::tracing::branch::track::{FootholdOf, Track};
-use crate::tracing::end::{End, SHORTEST, Special, Stop};
+use crate::tracing::end::{End, Special, Stop};
 use crate::tracing::fit::Target;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::Seed;
@@ -98,7 +98,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let [positive, negative] = seed.labels.clone();
         let (orientation, sides) =
             if forward { (1.0, [positive, negative]) } else { (-1.0, [negative, positive]) };
-        let step = 1e-3 * runs.scale;
+        let step = runs.lengths.around;
         let mut track = Track {
             runs,
             margin: seed.margin.clone(),
@@ -108,7 +108,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             origin: Node { point: seed.point, tangent: Point::zeros() },
             footholds: VecDeque::new(),
             step,
-            radius: 0.1 * runs.scale,
+            radius: 0.1 * runs.lengths.scale,
             taken: 0,
         };
         let Some(gradient) =
@@ -157,8 +157,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             return Ok(Some(nodes));
         };
         let (runs, point) = (self.track.runs, special.point);
-        let lies_before =
-            |node: &Node| (point - node.point).dot(&node.tangent) > SHORTEST * runs.scale;
+        let lies_before = |node: &Node| (point - node.point).dot(&node.tangent) > runs.lengths.same;
         while nodes.pop_if(|node| !lies_before(node)).is_some() {}
         let last = nodes.last().copied().unwrap_or(self.track.origin);
         if !lies_before(&last) {
@@ -232,7 +231,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
                     return self.finish_at(special);
                 }
             }
-            if h < 1e-12 * runs.scale {
+            if h < runs.lengths.least {
                 return self.stall(&from, beyond.as_ref(), h);
             }
             h *= factor;
@@ -246,12 +245,6 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         beyond: Option<&FootholdOf<F>>,
         h: f64,
     ) -> Traced<(), F> {
-        /// A tangency this close to another end, as a fraction of the window's shorter extent, is
-        /// the same place, and more accurate.
-        const BETTER: f64 = 1e-2;
-        /// A branch that stalls this close to an edge, as a fraction of the same extent, leaves the
-        /// window there.
-        const EDGE: f64 = 1e-7;
         if let Some(special) = cusp::beyond(&self.track, from)? {
             return self.finish_at(special);
         }
@@ -260,14 +253,15 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             let other = special::give_up(&self.track, from, beyond, h)?;
             // The end is found without a tangency only where the margin ceases to exist.
             let ceases = other.solved && other.kind == VertexKind::Degenerate;
-            let near = BETTER * self.track.runs.scale;
+            // A tangency close to it is the same place, and more accurate.
+            let near = self.track.runs.lengths.beyond;
             found = tangency::branch_begins(&self.track, from)?
                 .filter(|(place, _)| !ceases || (place.point - other.point).norm() <= near);
             if found.is_none() && !other.solved {
                 if let Some(index) = self.track.touched(from)? {
                     return self.finish(End::Known(index), Vec::new());
                 }
-                let ahead = from.node.point + from.node.tangent * (EDGE * self.track.runs.scale);
+                let ahead = from.node.point + from.node.tangent * self.track.runs.lengths.half;
                 if let Some(exit) = self.track.exit_before(&ahead)? {
                     let exit = special::edge(self.track.runs, &exit, &self.track.margin);
                     return self.finish_at(exit);
@@ -299,7 +293,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let options = &runs.options;
         let arc = Cubic::between(&from.node, &foothold.node);
         let angle = from.node.tangent.angle(&foothold.node.tangent);
-        self.track.radius = (arc.chord() / angle).min(runs.scale);
+        self.track.radius = (arc.chord() / angle).min(runs.lengths.scale);
         let by_error = (0.4 * options.interpolation / error).powf(0.25);
         let by_angle = 0.7 * options.max_angle / angle;
         let by_effort = 4.0 / evaluations as f64;
@@ -353,7 +347,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             Some(exit) => special::edge(self.track.runs, &exit, &self.track.margin),
             None => special,
         };
-        let near = special.uncertainty + SHORTEST * self.track.runs.scale;
+        let near = special.uncertainty + self.track.runs.lengths.same;
         let known = self
             .track
             .stops

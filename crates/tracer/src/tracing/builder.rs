@@ -7,7 +7,8 @@
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
-use crate::tracing::end::{SHORTEST, Special, Stop};
+use crate::lengths::Lengths;
+use crate::tracing::end::{Special, Stop};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::window::{Point, Window};
 
@@ -26,7 +27,7 @@ pub(crate) struct Builder<Label, Margin> {
     pub stops: Vec<Stop>,
     /// The parts of divided curves, whose labels must be checked again.
     pub suspects: Vec<usize>,
-    scale: f64,
+    lengths: Lengths,
     /// The pieces (curve, node) in every cell of the window.
     cells: Vec<Vec<(usize, usize)>>,
 }
@@ -35,8 +36,8 @@ pub(crate) struct Builder<Label, Margin> {
 const CELLS: usize = 64;
 
 impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
-    /// A network without curves; lengths are relative to `scale`.
-    pub fn new(window: Window, scale: f64) -> Self {
+    /// A network without curves.
+    pub fn new(window: Window, lengths: Lengths) -> Self {
         let network = Network {
             window,
             curves: Vec::new(),
@@ -45,7 +46,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             unresolved: Vec::new(),
         };
         let cells = vec![Vec::new(); CELLS * CELLS];
-        Self { network, stops: Vec::new(), suspects: Vec::new(), scale, cells }
+        Self { network, stops: Vec::new(), suspects: Vec::new(), lengths, cells }
     }
 
     /// A network that was begun before.
@@ -53,9 +54,9 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         stops: Vec<Stop>,
         network: Network<Label, Margin>,
         suspects: Vec<usize>,
-        scale: f64,
+        lengths: Lengths,
     ) -> Self {
-        let mut builder = Self { stops, suspects, ..Self::new(network.window, scale) };
+        let mut builder = Self { stops, suspects, ..Self::new(network.window, lengths) };
         builder.network = network;
         builder.enter_all();
         builder
@@ -64,7 +65,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     /// Adds a vertex, unless it is known, and returns its index. A new vertex divides the curves
     /// that pass through it, and their parts become [suspects](Self::suspects).
     pub fn add_vertex(&mut self, special: &Special<Margin>) -> usize {
-        let near = special.uncertainty + SHORTEST * self.scale;
+        let near = special.uncertainty + self.lengths.same;
         let known = self
             .stops
             .iter()
@@ -139,7 +140,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     /// Another vertex at a place for which a vertex was solved. Its error must be no larger than
     /// the distance at which places are distinguished.
     pub fn same_place(&self, index: usize, special: &Special<Margin>) -> Option<usize> {
-        let shortest = SHORTEST * self.scale;
+        let shortest = self.lengths.same;
         let is_there = |stop: &Stop| {
             let distance = (stop.point - special.point).norm();
             stop.uncertainty <= shortest && distance <= special.uncertainty + 2.0 * shortest
@@ -151,8 +152,6 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     /// is shorter than `near`; or a branch stalled at `index`, and the curve is shorter than runs
     /// can resolve in a narrow window.
     pub fn indistinct(&self, index: usize, near: f64) -> Option<usize> {
-        /// The greatest length of the curve, as a fraction of the window's shorter extent.
-        const STALLED: f64 = 1e-5;
         let is_stalled = |vertex| self.network.unresolved.contains(&Unresolved::Stalled { vertex });
         let on_edge = |vertex: usize| self.network.vertices[vertex].kind.is_on_window();
         let Stop { point: from, uncertainty } = self.stops[index];
@@ -160,7 +159,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         if !stalled && on_edge(index) {
             return None;
         }
-        let farthest = if stalled { STALLED * self.scale } else { near };
+        let farthest = if stalled { self.lengths.close } else { near };
         let is_short = |curve: &&Curve<Label, Margin>| {
             curve.nodes.iter().all(|node| (node.point - from).norm() <= farthest)
         };
@@ -246,7 +245,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
 
     /// Adds a curve. Of nodes that nearly coincide one is kept, preferably the end of the curve.
     pub fn add_curve(&mut self, mut curve: Curve<Label, Margin>) -> Option<usize> {
-        let shortest = SHORTEST * self.scale;
+        let shortest = self.lengths.same;
         let last = curve.nodes.len().checked_sub(1)?;
         let end = curve.nodes[last];
         let mut nodes: Vec<Node> = Vec::with_capacity(curve.nodes.len());
@@ -274,7 +273,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     /// Whether a place on a boundary with these labels on its sides lies on a known curve, whatever
     /// the margin of this curve is.
     pub fn covers(&self, point: &Point, labels: &[Label; 2]) -> bool {
-        let near = 1e-8 * self.scale;
+        let near = self.lengths.touch;
         self.near(&[*point, *point]).into_iter().any(|(curve, piece)| {
             let sides = &self.network.curves[curve].sides;
             (sides == labels || (sides[0] == labels[1] && sides[1] == labels[0]))
@@ -285,7 +284,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     /// Whether known curves through a place lead from one label to another, in any order: the
     /// curves are closer together than runs can resolve.
     fn leads(&self, point: &Point, labels: &[Label; 2]) -> bool {
-        let near = 4e-8 * self.scale;
+        let near = 4.0 * self.lengths.touch;
         let pieces = self.near(&[*point, *point]).into_iter();
         let through =
             pieces.filter(|&(curve, piece)| self.arc(curve, piece).closest(point).1 < near);
@@ -347,7 +346,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             [0, 1].map(|end| {
                 let sign = if end == 0 { -1.0 } else { 1.0 };
                 // Places at the edge of a cell belong to its neighbour too.
-                let place = bounds[end][axis] + sign * 1e-7 * self.scale;
+                let place = bounds[end][axis] + sign * self.lengths.half;
                 let part = (place - self.network.window.low[axis]) / extent[axis];
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
                 let cell = (part * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize;
@@ -395,7 +394,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     /// Divides the curves that pass through a vertex.
     fn divide_curves(&mut self, vertex: usize) {
         let Stop { point, uncertainty } = self.stops[vertex];
-        let near = uncertainty + SHORTEST * self.scale;
+        let near = uncertainty + self.lengths.same;
         let mut hits: Vec<(usize, usize, f64)> = Vec::new();
         for (curve, piece) in self.near(&[point, point]) {
             let (theta, distance) = self.arc(curve, piece).closest(&point);
@@ -478,7 +477,7 @@ mod tests {
             uncertainty: 1e-12,
             solved,
         };
-        let mut builder = Builder::<usize, usize>::new(window, 1.0);
+        let mut builder = Builder::<usize, usize>::new(window, Lengths::PARTS);
         let [first, last] =
             [special(0.2, true), special(0.4, false)].map(|special| builder.add_vertex(&special));
         builder.join(last, first);

@@ -4,10 +4,12 @@
 //! derivatives would take five times as long as a run, and cubics are checked by values of the
 //! margin, to 1e-10.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
 
+use crate::conditions::{Limits, Unsolved, Zero, solve};
 use crate::family::Family;
-use crate::inverse;
+use crate::lengths::angle;
+use crate::options::TraceOptions;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
 
@@ -88,9 +90,8 @@ pub(crate) fn correct_on_edge<F: Family>(
     }))
 }
 
-/// The place near `guess` where two margins vanish together, by Newton's method, and its largest
-/// error. The error is large if the boundaries almost touch. Gradients are differences along
-/// `direction` and across it.
+/// The place near `guess` where two margins vanish together, and its largest error. The error is
+/// large if the boundaries almost touch. Gradients are differences along `direction` and across it.
 ///
 /// If one margin ceases to exist at the boundary of the other, the place is approached from the
 /// side on which both exist.
@@ -102,67 +103,44 @@ pub(crate) fn crossing<F: Family>(
     radius: f64,
     reach: f64,
 ) -> Traced<Option<(Point, f64)>, F> {
-    /// An update to a place without one of the margins is trusted if it is shorter than this
-    /// fraction of the window's shorter extent. Its error is of second order.
-    const LAST: f64 = 1e-7;
-    /// The least sine of the angle between the two boundaries for which such an update is trusted.
-    const TRANSVERSAL: f64 = 0.03;
-    let mut point = *guess;
-    let mut update = Point::zeros();
+    let TraceOptions { tolerance, noise, .. } = runs.options;
+    let last = runs.lengths.half;
+    let stalled = 10.0 * tolerance;
+    let limits = Limits::new(reach, tolerance);
+    let limits = Limits { stalled, noise, reuse: 0.01, retreat: last, ..limits };
     let mut sine = 0.0;
-    let mut last = f64::INFINITY;
-    let mut inverse: Option<Matrix2<f64>> = None;
-    for _ in 0..40 {
-        let (Some(first), Some(second)) =
-            (runs.margin(&point, margins[0])?, runs.margin(&point, margins[1])?)
-        else {
-            if sine < TRANSVERSAL {
-                return Ok(None);
-            }
-            if last <= LAST * runs.scale {
-                return Ok(Some((point, last.max(10.0 * runs.options.tolerance))));
-            }
-            update *= 0.5;
-            point += update;
-            continue;
+    let found: Traced<_, F> = solve(guess, &limits, |at, steep| {
+        let values = margins.map(|margin| runs.margin(at, margin));
+        let [Some(one), Some(two)] = both(values)? else {
+            // Between boundaries that nearly touch, no way leads back.
+            let apart = sine >= angle::TRANSVERSAL;
+            return Ok((!apart).then(|| (Point::repeat(f64::NAN), None)));
         };
-        if inverse.is_none() {
-            let (Some(one), Some(two)) = (
-                runs.gradient(&point, margins[0], direction, radius)?,
-                runs.gradient(&point, margins[1], direction, radius)?,
-            ) else {
-                return Ok(None);
-            };
-            sine = one.perp(&two).abs() / (one.norm() * two.norm());
-            let independent = sine > 1e-7;
-            if !independent {
-                return Ok(None);
-            }
-            let gradients = Matrix2::from_rows(&[one.transpose(), two.transpose()]);
-            inverse = inverse::of_two(&gradients);
+        let values = Point::new(one, two);
+        if !steep {
+            return Ok(Some((values, None)));
         }
-        let Some(solver) = inverse else { return Ok(None) };
-        update = solver * Vector2::new(first, second);
-        point -= update;
-        let size = update.norm();
-        let within = (point - guess).norm() <= reach;
-        if !within {
-            return Ok(None);
+        let gradients = margins.map(|margin| runs.gradient(at, margin, direction, radius));
+        let [Some(one), Some(two)] = both(gradients)? else { return Ok(Some((values, None))) };
+        sine = one.perp(&two).abs() / (one.norm() * two.norm());
+        let slopes = Matrix2::from_rows(&[one.transpose(), two.transpose()]);
+        Ok(Some((values, Some(slopes).filter(|_| sine > angle::DEPENDENT))))
+    });
+    Ok(match found? {
+        Ok(Zero { at, error, .. }) => Some((at, error)),
+        Err(Unsolved::Ceases { at, update }) if update <= last => {
+            Some((at, update.max(10.0 * tolerance)))
         }
-        let resolution = runs.options.tolerance.max(runs.options.noise * solver.norm());
-        if size <= runs.options.tolerance || (size <= 10.0 * resolution && size >= 0.5 * last) {
-            return Ok(Some((point, 10.0 * resolution)));
-        }
-        // The gradients are used again as long as the updates shrink fast.
-        if size > 0.01 * last {
-            inverse = None;
-        }
-        last = size;
-    }
-    Ok(None)
+        Err(_) => None,
+    })
 }
 
-/// The place near `guess` where the gradient of a margin vanishes, by Newton's method.
+/// Both of two results.
+fn both<T, E>([one, two]: [Result<T, E>; 2]) -> Result<[T; 2], E> {
+    Ok([one?, two?])
+}
+
+/// The place near `guess` where the gradient of a margin vanishes.
 ///
 /// The step of the differences follows the updates. So a singular second derivative only slows the
 /// method down: at a cusp each round halves the distance.
@@ -173,26 +151,16 @@ pub(crate) fn stationary<F: Family>(
     spread: f64,
     reach: f64,
 ) -> Traced<Option<Point>, F> {
-    let mut point = *guess;
-    let mut h = spread;
-    for _ in 0..60 {
-        let Some((gradient, second)) = derivatives(runs, margin, &point, h)? else {
-            return Ok(None);
-        };
-        let Some(inverse) = inverse::of_two(&second) else { return Ok(None) };
-        let update = inverse * gradient;
-        point -= update;
-        let within = (point - guess).norm() <= reach;
-        if !within {
-            return Ok(None);
+    let (mut h, mut last) = (spread, None);
+    let limits = Limits { rounds: 60, ..Limits::new(reach, runs.options.tolerance) };
+    let zero: Traced<_, F> = solve(guess, &limits, |at, _| {
+        if let Some(last) = last.replace(*at) {
+            h = (0.1 * (*at - last).norm()).min(h);
         }
-        let size = update.norm();
-        if size <= runs.options.tolerance {
-            return Ok(Some(point));
-        }
-        h = (0.1 * size).min(h);
-    }
-    Ok(None)
+        let found = derivatives(runs, margin, at, h)?;
+        Ok(found.map(|(gradient, second)| (gradient, Some(second))))
+    });
+    Ok(zero?.ok().map(|zero| zero.at))
 }
 
 /// The gradient and the second derivatives of a margin by differences with step `h`.

@@ -12,7 +12,6 @@ use crate::cubic::bernstein::each_root;
 use crate::curve::{Curve, Node, Vertex, VertexKind};
 use crate::family::Family;
 use crate::tracing::corrector::correct_on_edge;
-use crate::tracing::end::SHORTEST;
 use crate::tracing::network::{Network, NetworkOf, Unresolved};
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::{Point, Window};
@@ -26,7 +25,7 @@ pub(crate) fn cut<F: Family>(
     if network.window == *window {
         return network.clone();
     }
-    let near = SHORTEST * runs.scale;
+    let near = runs.lengths.same;
     let mut cutter =
         Cutter { runs, window, near, old: &network.vertices, new: Vec::new(), indices: Vec::new() };
     cutter.indices = (0..network.vertices.len()).map(|old| cutter.inner(old)).collect();

@@ -3,9 +3,6 @@
 use crate::curve::VertexKind;
 use crate::window::Point;
 
-/// Places closer together than this fraction of the window's shorter extent count as one.
-pub const SHORTEST: f64 = 1e-9;
-
 /// Why a branch ended.
 #[derive(Clone, Debug)]
 pub enum End<Margin> {

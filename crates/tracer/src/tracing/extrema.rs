@@ -3,6 +3,7 @@
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node};
 use crate::family::Family;
+use crate::lengths::angle;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::identify;
@@ -19,10 +20,6 @@ pub struct Extremum {
     pub point: Point,
 }
 
-/// Components of unit tangents up to this count as zero. On a boundary that is straight along the
-/// other axis they are rounding errors.
-const STRAIGHT: f64 = 1e-6;
-
 /// The extrema of `curves`, in the order of the curves and from start to end.
 pub(crate) fn extrema<F: Family>(
     runs: &Runs<'_, F>,
@@ -35,7 +32,7 @@ pub(crate) fn extrema<F: Family>(
             let mut places = Vec::new();
             for bracket in brackets(curve, axis) {
                 let component = |node: &Node| node.tangent[axis];
-                let is_straight = |component: f64| component.abs() <= STRAIGHT;
+                let is_straight = |component: f64| component.abs() <= angle::STRAIGHT;
                 places.extend(solve(runs, curve, &bracket, component, is_straight)?);
             }
             let known = 10.0 * runs.options.interpolation;
@@ -83,7 +80,7 @@ pub(crate) struct Bracket {
 }
 
 fn brackets<Label, Margin>(curve: &Curve<Label, Margin>, axis: usize) -> Vec<Bracket> {
-    let bends = |node: &Node| node.tangent[axis].abs() > STRAIGHT;
+    let bends = |node: &Node| node.tangent[axis].abs() > angle::STRAIGHT;
     let Some(start) = curve.nodes.iter().position(bends) else { return Vec::new() };
     let mut nodes = curve.nodes.clone();
     if curve.ends.is_none() {
@@ -133,7 +130,7 @@ pub(crate) fn solve<F: Family>(
     let [mut below, mut above] =
         [0, bracket.nodes.len() - 1].map(|node| value(&bracket.nodes[node]));
     let chord = (bracket.nodes[0].point - bracket.nodes[bracket.nodes.len() - 1].point).norm();
-    let close = 1e-10 * runs.scale / chord;
+    let close = runs.lengths.solved / chord;
     let mut last = f64::INFINITY;
     let mut kept_low = None;
     for _ in 0..ROUNDS {

@@ -9,54 +9,10 @@
 use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::Family;
+use crate::lengths::angle;
 use crate::tracing::corrector::correct;
-use crate::tracing::end::SHORTEST;
 use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::tracer::Tracer;
 use crate::window::Point;
-
-impl<F: Family> Tracer<'_, F> {
-    /// Leads curves to their vertices again where these have moved since they were traced.
-    pub(super) fn fit_ends(&mut self) -> Traced<(), F> {
-        for index in 0..self.builder.network.curves.len() {
-            for start in [true, false] {
-                let curve = &self.builder.network.curves[index];
-                if curve.ends.is_none() {
-                    break;
-                }
-                let mut nodes = curve.nodes.clone();
-                if start {
-                    turn(&mut nodes);
-                }
-                let [.., last, end] = nodes[..] else { break };
-                let margin = self.runs.moved(&last.point, &curve.margin)?;
-                let arc = Cubic::between(&last, &end);
-                let radius = (arc.chord() / last.tangent.angle(&end.tangent)).min(self.runs.scale);
-                let fit = Fit { runs: &self.runs, margin: &margin, radius };
-                let gradient = self.runs.gradient(&last.point, &margin, &last.tangent, radius)?;
-                let Some(gradient) = gradient else { continue };
-                if fit.error(&arc, &gradient)? <= self.runs.options.interpolation {
-                    continue;
-                }
-                nodes.pop();
-                nodes.extend(fit.nodes(&last, &gradient, Target::Vertex(end.point))?);
-                if start {
-                    turn(&mut nodes);
-                }
-                self.builder.replace_nodes(index, nodes);
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Turns the direction of a curve.
-fn turn(nodes: &mut [Node]) {
-    nodes.reverse();
-    for node in nodes {
-        node.tangent = -node.tangent;
-    }
-}
 
 /// Where cubics are compared with the boundary. The errors of fourth and of fifth order together
 /// vanish at one of these places at most.
@@ -128,7 +84,7 @@ impl<F: Family> Fit<'_, '_, F> {
         let chord = vertex - last.point;
         let end = |tangent| Node { point: *vertex, tangent };
         // A chord as short as the tolerance has no meaningful direction.
-        if chord.norm() < SHORTEST * self.runs.scale {
+        if chord.norm() < self.runs.lengths.same {
             return Ok(vec![end(last.tangent)]);
         }
         let circular = mirrored(&last.tangent, &chord);
@@ -136,7 +92,7 @@ impl<F: Family> Fit<'_, '_, F> {
         let gradient = self.runs.gradient(vertex, self.margin, &circular, self.radius)?;
         if let Some(tangent) = gradient.map(|gradient| normal(&gradient, &circular)) {
             let turn = tangent.angle(&circular);
-            if turn < 0.1 * last.tangent.angle(&chord) + 1e-6 {
+            if turn < 0.1 * last.tangent.angle(&chord) + angle::STRAIGHT {
                 ends.insert(0, end(tangent));
             }
         }
@@ -172,10 +128,8 @@ impl<F: Family> Fit<'_, '_, F> {
         (target, end): (Target, Node),
         error: f64,
     ) -> Traced<Option<(Node, Point)>, F> {
-        /// The shortest chord that is divided, as a fraction of the window's shorter extent.
-        const SHORT: f64 = 1e-6;
         let arc = Cubic::between(last, &end);
-        if error <= self.runs.options.interpolation || arc.chord() <= SHORT * self.runs.scale {
+        if error <= self.runs.options.interpolation || arc.chord() <= self.runs.lengths.piece {
             return Ok(None);
         }
         let (guess, tangent) = (arc.at(0.5), arc.tangent(0.5));

@@ -84,6 +84,48 @@ pub enum Unresolved<Label> {
     },
 }
 
+impl<Label, Margin> Network<Label, Margin> {
+    /// The same network with other labels and margins.
+    #[must_use]
+    pub fn map<L, M>(
+        self,
+        label: impl Fn(&Label) -> L,
+        margin: impl Fn(&Margin) -> M,
+    ) -> Network<L, M> {
+        let Self { window, curves, vertices, statistics, unresolved } = self;
+        let both = |labels: [Label; 2]| labels.each_ref().map(&label);
+        let curves = curves.into_iter().map(|Curve { margin: own, sides, nodes, ends }| Curve {
+            margin: margin(&own),
+            sides: both(sides),
+            nodes,
+            ends,
+        });
+        let vertices = vertices.into_iter().map(|Vertex { point, kind, margins }| Vertex {
+            point,
+            kind,
+            margins: margins.iter().map(&margin).collect(),
+        });
+        let unresolved = unresolved.into_iter().map(|what| match what {
+            Unresolved::Change { between, labels } => {
+                Unresolved::Change { between, labels: both(labels) }
+            }
+            Unresolved::NoLength { point, labels } => {
+                Unresolved::NoLength { point, labels: both(labels) }
+            }
+            Unresolved::Stalled { vertex } => Unresolved::Stalled { vertex },
+            Unresolved::TooManyNodes { point } => Unresolved::TooManyNodes { point },
+            Unresolved::TooManyCurves { point } => Unresolved::TooManyCurves { point },
+        });
+        Network {
+            window,
+            curves: curves.collect(),
+            vertices: vertices.collect(),
+            statistics,
+            unresolved: unresolved.collect(),
+        }
+    }
+}
+
 impl<Label: Clone> Unresolved<Label> {
     /// A curve that was left out of a subdivision, because it has no length there.
     #[must_use]

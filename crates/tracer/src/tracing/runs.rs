@@ -4,6 +4,7 @@ use std::cell::Cell;
 
 use crate::executor::FreeRunOf;
 use crate::family::{Family, FreeRun};
+use crate::lengths::Lengths;
 use crate::options::{TraceError, TraceOptions};
 use crate::window::{Point, Window};
 
@@ -23,17 +24,13 @@ struct Slope {
 /// The greatest bend of a margin within the differences that give its gradient. Their error is
 /// about its square.
 const BENT: f64 = 0.05;
-/// The shortest steps of differences that follow a bend, as a fraction of the window's shorter
-/// extent.
-const SHORT: f64 = 1e-8;
 
 /// A family in a window, with the options of a trace. It makes and counts all runs.
 pub struct Runs<'a, F: Family> {
     family: &'a F,
     pub(crate) window: Window,
     pub(crate) options: TraceOptions,
-    /// The shorter extent of the window, to which steps and distances are relative.
-    pub(crate) scale: f64,
+    pub(crate) lengths: Lengths,
     free: Cell<usize>,
     prescribed: Cell<usize>,
 }
@@ -49,8 +46,8 @@ impl<'a, F: Family> Runs<'a, F> {
         if !extent.iter().all(|&length| length > 0.0 && length.is_finite()) {
             return Err(TraceError::Window { window });
         }
-        let scale = extent.min();
-        Ok(Self { family, window, options, scale, free: Cell::new(0), prescribed: Cell::new(0) })
+        let lengths = Lengths::of(extent.min());
+        Ok(Self { family, window, options, lengths, free: Cell::new(0), prescribed: Cell::new(0) })
     }
 
     /// The same runs in a larger window, with lengths relative to this one.
@@ -75,8 +72,8 @@ impl<'a, F: Family> Runs<'a, F> {
 
     /// The same runs, with counts of their own.
     pub(crate) fn aside(&self) -> Self {
-        let &Self { family, window, options, scale, .. } = self;
-        Self { family, window, options, scale, free: Cell::new(0), prescribed: Cell::new(0) }
+        let &Self { family, window, options, lengths, .. } = self;
+        Self { family, window, options, lengths, free: Cell::new(0), prescribed: Cell::new(0) }
     }
 
     /// Counts free runs that were computed elsewhere.
@@ -96,7 +93,7 @@ impl<'a, F: Family> Runs<'a, F> {
 
     pub(crate) fn margin(&self, point: &Point, margin: &F::Margin) -> Traced<Option<f64>, F> {
         // Newton's method may lead far away, where the family need not be defined.
-        let beyond = self.window.extent() * 1e-2;
+        let beyond = self.window.extent() * Lengths::PARTS.beyond;
         let Window { low, high } = self.window;
         if !(Window { low: low - beyond, high: high + beyond }).contains(point) {
             return Ok(None);
@@ -144,13 +141,13 @@ impl<'a, F: Family> Runs<'a, F> {
         direction: &Point,
         radius: f64,
     ) -> Traced<Option<Point>, F> {
-        let ratio = (radius / self.scale).clamp(1e-9, 1.0);
-        let mut h = 3e-5 * self.scale * ratio.powf(2.0 / 3.0);
+        let ratio = (radius / self.lengths.scale).clamp(Lengths::PARTS.same, 1.0);
+        let mut h = self.lengths.difference * ratio.powf(2.0 / 3.0);
         let across = Point::new(-direction.y, direction.x);
         let mut rise = self.slope(point, margin, &across, h)?;
         while let Some(Slope { bend, .. }) = rise
             && bend > BENT
-            && h > SHORT * self.scale
+            && h > self.lengths.touch
         {
             h *= (0.1 * BENT / bend).max(1e-2);
             rise = self.slope(point, margin, &across, h)?;
@@ -174,7 +171,7 @@ impl<'a, F: Family> Runs<'a, F> {
         direction: &Point,
     ) -> Traced<bool, F> {
         let across = Point::new(-direction.y, direction.x);
-        let slope = self.slope(point, margin, &across, SHORT * self.scale)?;
+        let slope = self.slope(point, margin, &across, self.lengths.touch)?;
         Ok(slope.is_some_and(|slope| slope.bend > 4.0 * BENT))
     }
 
@@ -186,7 +183,7 @@ impl<'a, F: Family> Runs<'a, F> {
         direction: &Point,
         mut h: f64,
     ) -> Traced<Option<Slope>, F> {
-        while h > 1e-9 * self.scale {
+        while h > self.lengths.same {
             let ahead = self.margin(&(point + direction * h), margin)?;
             let behind = self.margin(&(point - direction * h), margin)?;
             let (sign, near) = match (ahead, behind) {

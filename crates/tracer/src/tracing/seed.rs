@@ -1,6 +1,7 @@
 //! Seeds: from two places with different labels to a place on a boundary between them.
 
 use crate::family::Family;
+use crate::lengths::Lengths;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
@@ -64,7 +65,7 @@ pub(crate) fn bisect<F: Family>(
 ) -> Traced<Change<F::Label>, F> {
     let [mut low, mut high] = places;
     let [first, mut second] = labels;
-    let width = (1e-9 * runs.scale / (b - a).norm()).min(1e-3);
+    let width = (runs.lengths.same / (b - a).norm()).min(Lengths::PARTS.around);
     while high - low > width {
         let middle = 0.5 * (low + high);
         if !(middle > low && middle < high) {
@@ -112,7 +113,9 @@ pub(crate) fn identify<F: Family>(
             continue;
         }
         tried.push(margin.clone());
-        let Some(gradient) = runs.gradient(&middle, &margin, &along, runs.scale)? else { continue };
+        let Some(gradient) = runs.gradient(&middle, &margin, &along, runs.lengths.scale)? else {
+            continue;
+        };
         let slope = gradient.norm();
         let reach = 10.0 * width + 10.0 * runs.resolution(slope);
         let near = value.abs() <= slope * reach;
@@ -143,7 +146,7 @@ pub(crate) fn holds<F: Family>(
     let resolution = runs.resolution(gradient.norm());
     let mut offset = runs.options.offset.max(10.0 * resolution);
     // The zero of such a flat margin cannot be located.
-    if offset.is_nan() || offset > 1e-3 * runs.scale {
+    if offset.is_nan() || offset > runs.lengths.around {
         return Ok(false);
     }
     let normal = gradient.normalize();

@@ -3,6 +3,7 @@
 use stickslip_solver::margin::{Margin, Place};
 
 use crate::curve::{Curve, Vertex};
+use crate::lengths::{Lengths, angle};
 use crate::regions::subdivision::Subdivision;
 use crate::tracing::network::Network;
 use crate::window::{Point, Window};
@@ -60,9 +61,6 @@ fn special_points<Label>(
     vertices: &[Vertex<Margin>],
     window: &Window,
 ) -> Vec<(usize, SpecialPoint)> {
-    /// Two ends within this distance, as a fraction of the window's shorter extent, belong to one
-    /// cusp. Margins are cubic in the distance there, so that each branch has an end of its own.
-    const CUSP: f64 = 3e-6;
     let mut arrivals: Vec<Vec<Arrival>> = vertices.iter().map(|_| Vec::new()).collect();
     for curve in curves {
         let Some([start, end]) = curve.ends else { continue };
@@ -72,7 +70,8 @@ fn special_points<Label>(
         arrivals[end].push(Arrival { margin, away: -curve.nodes[last].tangent });
     }
     let inside = |vertex: &Vertex<Margin>| !vertex.kind.is_on_window();
-    let near = CUSP * window.extent().min();
+    // Margins are cubic in the distance from a cusp, so that each branch has an end of its own.
+    let near = 3.0 * Lengths::of(window.extent().min()).piece;
     let partner = |index: usize| {
         let beside = |other: &usize| {
             let distance = (vertices[*other].point - vertices[index].point).norm();
@@ -106,7 +105,7 @@ fn name(arrivals: &[&Arrival<'_>]) -> SpecialPoint {
         graze_and_end && same_phase(one, other)
     };
     let tangent = |(one, other): (&Arrival<'_>, &Arrival<'_>)| {
-        one.away.dot(&other.away) > 0.0 && one.away.perp(&other.away).abs() < 0.02
+        one.away.dot(&other.away) > 0.0 && one.away.perp(&other.away).abs() < angle::TANGENT
     };
     let turns_back = |(one, other): (&Arrival<'_>, &Arrival<'_>)| one.away.dot(&other.away) > 0.0;
     let all_graze = places().all(|place| is_graze(&place));

@@ -1,10 +1,32 @@
 //! A search, and what it has found.
+//!
+//! In reading order:
+//!
+//! - `trace`: all boundaries in a window
+//! - `count`: how many curves and regions there are, roughly, before anything is traced
+//! - `stage` and `stages`: the order of the search, in steps
+//! - `state` and `resume`: what a search must remember to go on later
+//! - `scan`: the boundaries that cross a segment
+//! - `island`: closed boundaries between the places of the grid
+//! - `sliver`: boundaries of regions between two places with the same label
+//! - `ends`: the ends of curves, when all curves are known
+
+pub mod count;
+mod ends;
+mod island;
+mod resume;
+mod scan;
+mod sliver;
+pub(crate) mod stage;
+mod stages;
+pub(crate) mod state;
+pub mod trace;
 
 use crate::family::Family;
 use crate::tracing::builder::Builder;
 use crate::tracing::runs::{Runs, Sampled};
-use crate::tracing::stage::Stage;
-use crate::tracing::state::StateOf;
+use crate::tracing::tracer::stage::Stage;
+use crate::tracing::tracer::state::StateOf;
 use crate::window::Window;
 
 /// A search for boundaries in a window. It keeps what it has found and can be continued.
@@ -25,12 +47,12 @@ pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
     /// The window of the caller. The window of the runs and of the builder is larger.
-    pub(super) window: Window,
+    window: Window,
     /// The number of vertices around which boundaries were searched for.
-    pub(super) probed: usize,
-    pub(super) stage: Stage,
+    probed: usize,
+    stage: Stage,
     /// The runs that the stage begins with.
-    pub(super) sampled: Vec<Sampled<F>>,
+    sampled: Vec<Sampled<F>>,
     /// The state before a second look, while it lasts.
-    pub(super) before_look: Option<Box<StateOf<F>>>,
+    before_look: Option<Box<StateOf<F>>>,
 }

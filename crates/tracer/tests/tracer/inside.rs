@@ -14,8 +14,9 @@ pub mod window {
 #[path = "../../src"]
 pub mod source {
     pub mod cubic;
+    pub mod lengths;
 }
-pub use source::cubic;
+pub use source::{cubic, lengths};
 
 #[path = "../../src/regions"]
 pub mod regions {

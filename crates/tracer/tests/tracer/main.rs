@@ -2,6 +2,7 @@
 
 mod any;
 mod bent_chessboard;
+mod conditions;
 mod counting;
 #[cfg(feature = "serde")]
 mod documents;
@@ -26,4 +27,4 @@ mod vertex_kinds;
 mod window_edges;
 
 // Where modules of the crate find each other.
-use inside::{cubic, curve, tracing, window};
+use inside::{cubic, curve, lengths, tracing, window};

@@ -41,7 +41,7 @@ pub fn row(window: &Window, points: usize) -> Result<Row, Box<dyn Error>> {
     let frame = Frame::new(kappa, psi, damping);
     let (found, seconds) = timed(|| atlas::trace(frame, frame.tolerances().usual, SILENT));
     let found = found?;
-    let regions = &found.atlas.regions;
+    let regions = &found.regions;
     Ok(Row {
         what: format!(
             "κ {:?}:{:?}, ψ {:?}:{:?}, a = {damping:?}",
@@ -51,8 +51,8 @@ pub fn row(window: &Window, points: usize) -> Result<Row, Box<dyn Error>> {
         regions: regions.regions().len(),
         unresolved: found.report.unresolved.len(),
         findings: found.report.findings.len(),
-        wrong: wrong(&found.atlas, points)?,
-        objection: found.report.objection(),
+        wrong: wrong(&found, points)?,
+        objection: found.objection(),
         seconds,
     })
 }
@@ -60,15 +60,15 @@ pub fn row(window: &Window, points: usize) -> Result<Row, Box<dyn Error>> {
 /// The number of random points, uniform in the logarithms of κ and ψ, whose region has other
 /// switches than their collisions.
 fn wrong(atlas: &Atlas, points: usize) -> Result<usize, Box<dyn Error>> {
-    let Frame { kappa, psi, .. } = atlas.frame;
-    let plane = atlas.frame.plane()?;
+    let [kappa, psi] = atlas.plane.sheet().sides;
+    let plane = atlas.plane;
     let mut random = fastrand::Rng::with_seed(1);
     let mut place =
         |Range { low, high }: Range| (low * (high / low).powf(random.f64())).clamp(low, high);
     let points: Vec<[f64; 2]> = (0..points).map(|_| [place(kappa), place(psi)]).collect();
     let is_wrong = |point: &[f64; 2]| {
         let Ok(contact) = plane.contact_at(*point) else { return true };
-        let Ok(region) = atlas.locate(&contact).region else { return true };
+        let Ok(region) = atlas.locate(*point).region else { return true };
         let found = Engine::Auto.collide(contact);
         found.map_or(true, |(found, _)| found.itinerary() != atlas.itinerary(region))
     };

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     report("at random", &errors(points, &table, &bilinear, |random| at_random(&settings, random))?);
     let [kappa, psi] = settings.window.sides();
     let frame = Frame::new(kappa, psi, 0.0);
-    let atlas = trace(frame, frame.tolerances().usual, SILENT)?.atlas;
+    let atlas = trace(frame, frame.tolerances().usual, SILENT)?;
     report(
         "beside boundaries",
         &errors(points / 10, &table, &bilinear, |random| beside(&atlas, random))?,
@@ -85,12 +85,12 @@ fn beside(atlas: &Atlas, random: &mut Rng) -> [f64; 2] {
         let nodes = &curves[random.usize(..curves.len())].nodes;
         let node = random.usize(1..nodes.len());
         let (low, high) = (nodes[node - 1].point, nodes[node].point);
-        let [one, other] = [low, high].map(|point| atlas.chart.parameters(&point));
+        let [one, other] = [low, high].map(|point| atlas.plane.parameters(&point));
         let kappa = one[0] + (other[0] - one[0]) * random.f64();
         let Some(psi) = crossing(atlas, [low, high], kappa) else { continue };
         let distance = psi * 10_f64.powf(-1.0 - 13.0 * random.f64());
         let psi = if random.bool() { psi + distance } else { psi - distance };
-        let (within, range) = (atlas.frame.kappa, atlas.frame.psi);
+        let [within, range] = atlas.plane.sheet().sides;
         if (within.low..=within.high).contains(&kappa) && (range.low..=range.high).contains(&psi) {
             return [kappa, psi];
         }
@@ -99,7 +99,7 @@ fn beside(atlas: &Atlas, random: &mut Rng) -> [f64; 2] {
 
 /// ψ at which collisions change their switches at `kappa`, near the chord between two nodes.
 fn crossing(atlas: &Atlas, ends: [stickslip::tracer::Point; 2], kappa: f64) -> Option<f64> {
-    let [low, high] = ends.map(|point| atlas.chart.parameters(&point)[1]);
+    let [low, high] = ends.map(|point| atlas.plane.parameters(&point)[1]);
     let spread = 0.1 * (high - low).abs() + 1e-9 * low;
     let (mut low, mut high) = (low.min(high) - spread, low.max(high) + spread);
     let itinerary =

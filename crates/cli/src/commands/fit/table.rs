@@ -41,6 +41,10 @@ pub fn write(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
     for interval in &fit.intervals {
         writeln!(out, "{}", line(fit, interval))?;
     }
+    writeln!(out, "\nWhat the data decide")?;
+    for interval in &fit.intervals {
+        writeln!(out, "{}", interval.verdict())?;
+    }
     if let Some(mindlin) = &fit.mindlin {
         writeln!(out, "\n{}", of_mindlin(fit, mindlin))?;
     }
@@ -170,6 +174,8 @@ fn boundaries(out: &mut dyn Write, course: &Course) -> io::Result<()> {
     writeln!(out, "\nSwitches of the best fit from {low:.3}° to {high:.3}°")?;
     if course.boundaries.is_empty() {
         writeln!(out, "the same everywhere")?;
+    } else {
+        writeln!(out, "(a character a phase: + and - slip to either side, o stick)")?;
     }
     for boundary in &course.boundaries {
         let (angle, below, above) =

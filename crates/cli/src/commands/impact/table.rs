@@ -6,7 +6,7 @@ use stickslip_model::Engine;
 use stickslip_model::spheres::{ForceSwitch, ImpactReport, Vector3};
 use stickslip_solver::Statistics;
 
-use crate::output::text::{aligned, describe, law, number, pairs, work};
+use crate::output::text::{aligned, describe, explained, law, number, pairs, work};
 
 /// Writes `impact` as tables.
 ///
@@ -103,7 +103,7 @@ fn results(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
             ("contact time [s]", number(outcome.contact_time_s)),
             ("switches", outcome.switches.len().to_string()),
             ("reversals of the motion", impact.reversals().to_string()),
-            ("itinerary", impact.itinerary()),
+            ("itinerary", explained(&impact.itinerary())),
         ],
     )?;
     writeln!(out)

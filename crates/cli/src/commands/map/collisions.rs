@@ -1,6 +1,6 @@
 //! A map of collisions. It is computed and stored tile by tile, and put together at the end.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rayon::ThreadPool;
 use stickslip_figure::pictures;
@@ -10,7 +10,7 @@ use stickslip_files::input::{bodies, law};
 use stickslip_files::map::{
     Found, Provenance, Results, Stored, Task, Tiles, csv, npz, part_file, thumbnail,
 };
-use stickslip_files::output::file::{OutputFile, StoredFile, publish};
+use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Engine, Law};
 use stickslip_plane::atlas::RatioRange;
@@ -19,11 +19,11 @@ use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 
 use super::{MapArguments, MapFormat};
 use crate::error::Failure;
-use crate::output::console::say;
+use crate::output::console::{counted, deliver, say};
 use crate::output::progress::Bar;
+use crate::output::text::describe;
 use crate::shared::collision::{ImpactRange, window};
 use crate::shared::files::{plotted, require_different};
-use crate::shared::method::Method;
 use crate::version;
 
 /// Largest number of columns, and of rows, in the picture.
@@ -35,9 +35,10 @@ const MOST_PIXELS: usize = 1000;
 /// Files cannot be written, another process makes the same map, or some points have no result. In
 /// the last case the map is complete.
 pub fn run(arguments: &MapArguments) -> Result<(), Failure> {
-    let MapArguments { part, out, plot, bodies, threads, .. } = arguments;
+    let MapArguments { part, plot, bodies, threads, .. } = arguments;
     let (part, plot) = (*part, plot.as_ref());
-    let outputs = [("--out", Some(&**out)), plotted(plot)];
+    let (out, shown) = arguments.main_file()?;
+    let outputs = [("--out", arguments.out.as_deref()), plotted(plot)];
     require_different(&outputs, &[("--bodies", bodies.as_deref())])?;
     let output = MapOutput::of(arguments)?;
     let (grid, engine) = grid(arguments)?;
@@ -51,25 +52,28 @@ pub fn run(arguments: &MapArguments) -> Result<(), Failure> {
         say(format_args!("{}: has part {part} already", out.display()));
         // A process that was killed in its last moment has left them.
         Tiles::open(out, task, Some(part)).map(Tiles::remove).ok();
-        return require_all(&failures, &there, out);
+        return require_all(&failures, &there, (out, shown));
     }
     let tiles = Tiles::open(out, task, part)?;
-    let mut file = OutputFile::create_in(tiles.directory(), out)?;
+    let create = |out: &PathBuf| OutputFile::create_in(tiles.directory(), out);
+    let file = arguments.out.as_ref().map(create).transpose()?;
     compute(&tiles, &pool)?;
     let failures = tiles.failures().map_err(|error| tiles.unreadable(&error))?;
-    let files = match output {
-        MapOutput::Whole(format) => finish(&tiles, file, format, plot)?,
-        MapOutput::Part(part) => {
+    let files = match (output, file) {
+        (MapOutput::Part(part), Some(mut file)) => {
             part_file::write(&mut file, part, &tiles).map_err(|error| file.failure(error))?;
             vec![file.store()?]
         }
+        (MapOutput::Whole(format), Some(file)) => finish(&tiles, Some((file, format)), plot)?,
+        (MapOutput::Picture, _) | (_, None) => finish(&tiles, None, plot)?,
     };
-    publish(files)?;
+    let count = tiles.task().points_of(&tiles.tiles());
+    deliver(files, computed(count, &failures, &engine))?;
     if let Some(part) = part.filter(|_| tiles.tiles().is_empty()) {
         let (out, count) = (out.display(), tiles.task().tiles());
         say(format_args!("{out}: part {part} is empty, because the map has {count} tiles only"));
     }
-    let outcome = require_all(&failures, &tiles, out);
+    let outcome = require_all(&failures, &tiles, (out, shown));
     tiles.remove();
     outcome
 }
@@ -97,35 +101,44 @@ fn compute(tiles: &Tiles, pool: &ThreadPool) -> Result<(), Failure> {
 /// A file cannot be written, or a tile cannot be read.
 pub fn finish(
     stored: &impl Stored,
-    mut file: OutputFile,
-    format: MapFormat,
+    data: Option<(OutputFile, MapFormat)>,
     plot: Option<&PictureFile>,
 ) -> Result<Vec<StoredFile>, Failure> {
     let Task { grid, engine, program, .. } = stored.task();
-    let provenance = Provenance::new(grid, engine, program);
-    let written = match format {
-        MapFormat::Npz => npz::write(&mut file, grid, &provenance, stored),
-        MapFormat::Csv => csv::write(&mut file, grid, &provenance, stored),
+    let write = |(mut file, format): (OutputFile, MapFormat)| {
+        let provenance = Provenance::new(grid, engine, program);
+        let written = match format {
+            MapFormat::Npz => npz::write(&mut file, grid, &provenance, stored),
+            MapFormat::Csv => csv::write(&mut file, grid, &provenance, stored),
+        };
+        written.map_err(|error| file.failure(error))?;
+        file.store()
     };
-    written.map_err(|error| file.failure(error))?;
+    let data = data.map(write).transpose()?;
     let picture = plot.map(|plot| draw(stored, plot)).transpose()?;
-    Ok([file.store()?].into_iter().chain(picture).collect())
+    Ok(data.into_iter().chain(picture).collect())
 }
 
-/// Tells which of the points in the finished file `out` have no result.
+/// How many of the points have a result, and what computed them.
+pub fn computed(points: usize, failures: &FailureCount, engine: &Engine) -> String {
+    let points = counted(points - failures.points(), "point", "points");
+    format!("{points} computed by {}", describe(engine))
+}
+
+/// Tells which of the points in the finished file `out` have no result, and are `shown` so.
 ///
 /// # Errors
 /// [`Failure::Points`] names the first of them.
 pub fn require_all(
     failures: &FailureCount,
     stored: &impl Stored,
-    out: &Path,
+    (out, shown): (&Path, &'static str),
 ) -> Result<(), Failure> {
     let task = stored.task();
     match failures.failed(&task.grid, task.engine) {
         Some(failed) => {
             let (path, points) = (out.to_owned(), task.points_of(&stored.tiles()));
-            Err(Failure::Points { failed: Box::new(failed), points, path })
+            Err(Failure::Points { failed: Box::new(failed), points, shown, path })
         }
         None => Ok(()),
     }
@@ -183,7 +196,7 @@ impl MapAxes {
     fn scaled(arguments: &MapArguments, law: (Law, f64)) -> Result<Self, Failure> {
         let MapArguments { kappa, psi, ratio, collisions, ref method, .. } = *arguments;
         let (columns, impact) = window(kappa, (psi, ratio), collisions)?;
-        let engine = method.engine(Method::Auto, law)?;
+        let engine = method.engine(law)?;
         let damping = collisions.damping.unwrap_or(0.0);
         let (rows, coordinates) = match impact {
             ImpactRange::Psi(psi) => (psi, Coordinates::Psi { damping }),
@@ -202,7 +215,7 @@ impl MapAxes {
         };
         let pair = bodies::read_pair(file, law)?;
         let law = (law, pair.tangential_damping());
-        let engine = arguments.method.engine(Method::Auto, law)?;
+        let engine = arguments.method.engine(law)?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
     }
 }
@@ -214,11 +227,14 @@ enum MapOutput {
     Whole(MapFormat),
     /// One of its parts, which are to be joined.
     Part(MapPart),
+    /// Only its picture.
+    Picture,
 }
 
 impl MapOutput {
     fn of(arguments: &MapArguments) -> Result<Self, Failure> {
         let MapArguments { part, out, .. } = arguments;
+        let Some(out) = out else { return Ok(Self::Picture) };
         match part {
             None => MapFormat::of(out).map(Self::Whole),
             Some(_) if is_standard_input(out) => {

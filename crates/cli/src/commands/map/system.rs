@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use rayon::prelude::*;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
 use stickslip_files::output::csv::{CsvFile, Rows};
-use stickslip_files::output::file::{OutputFile, StoredFile, publish};
+use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::npz::{Archive, array, number, plain, text, texts};
 use stickslip_files::output::picture::PictureFile;
 use stickslip_tracer::{DynamicFired, Point};
@@ -13,6 +13,7 @@ use stickslip_tracer::{DynamicFired, Point};
 use super::{MapArguments, MapFormat};
 use crate::commands::run::outcome;
 use crate::error::Failure;
+use crate::output::console::{counted, deliver};
 use crate::output::progress::Bar;
 use crate::shared::files::{plotted, require_different};
 use crate::shared::system::SystemPlane;
@@ -42,17 +43,19 @@ struct Cell {
 /// Options contradict each other, files cannot be written, or some points have no result. In the
 /// last case the map is complete.
 pub fn run(plane: &SystemPlane, arguments: &MapArguments) -> Result<(), Failure> {
-    let MapArguments { size, out, plot, threads, .. } = arguments;
+    let MapArguments { size, plot, threads, .. } = arguments;
     let plot = plot.as_ref();
+    let (path, shown) = arguments.main_file()?;
+    let out = arguments.out.as_deref();
     let system = ("the system", arguments.plane.system.as_deref());
-    require_different(&[("--out", Some(out)), plotted(plot)], &[system])?;
+    require_different(&[("--out", out), plotted(plot)], &[system])?;
     let (columns, rows) = (size.columns, size.rows);
     if columns.saturating_mul(rows) > MOST_POINTS {
         return Err(Failure::Usage(format!(
             "--size: {columns}x{rows} points; expected at most {MOST_POINTS} of a system"
         )));
     }
-    let format = MapFormat::of(out)?;
+    let format = out.map(|out| MapFormat::of(out).map(|format| (out, format))).transpose()?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let pool = threads.pool()?;
     let x = centres(plane.window.low.x, plane.window.high.x, columns);
@@ -66,21 +69,24 @@ pub fn run(plane: &SystemPlane, arguments: &MapArguments) -> Result<(), Failure>
     }
     drop(bar);
     let map = Map { plane, x, y, cells };
-    let stored = match format {
-        MapFormat::Npz => {
+    let data = match format {
+        Some((out, MapFormat::Npz)) => {
             let mut file = OutputFile::create(out)?;
             map.archive(&mut file).map_err(|error| file.failure(error))?;
-            file.store()?
+            Some(file.store()?)
         }
-        MapFormat::Csv => map.table(out)?,
+        Some((out, MapFormat::Csv)) => Some(map.table(out)?),
+        None => None,
     };
     let picture = plot.map(|plot| map.draw(plot)).transpose()?;
-    publish(std::iter::once(stored).chain(picture))?;
     let points = map.cells.len();
-    match map.cells.iter().filter(|cell| cell.events < 0).count() {
-        0 => Ok(()),
-        failed => Err(Failure::Runs { failed, points, path: out.clone() }),
+    let failed = map.cells.iter().filter(|cell| cell.events < 0).count();
+    let found = format!("{} computed", counted(points - failed, "run", "runs"));
+    deliver(data.into_iter().chain(picture), found)?;
+    if failed > 0 {
+        return Err(Failure::Runs { failed, points, shown, path: path.to_owned() });
     }
+    Ok(())
 }
 
 /// The centres of equal parts of an interval.
@@ -113,7 +119,7 @@ struct Map<'a> {
 impl Map<'_> {
     fn archive(&self, out: &mut OutputFile) -> io::Result<()> {
         let mut archive = Archive::new(out);
-        let [x, y] = &self.plane.axes;
+        let [x, y] = &self.plane.names.axes;
         let (columns, rows) = (self.x.len(), self.y.len());
         let shape = format!("{rows}, {columns}");
         let write = |out: &mut dyn Write, values: &mut dyn Iterator<Item = f64>| {
@@ -158,7 +164,7 @@ impl Map<'_> {
     fn table(&self, path: &std::path::Path) -> Result<StoredFile, Failure> {
         let mut file = CsvFile::create(path)?;
         let mut rows = Rows::default();
-        rows.fields(self.plane.axes.iter().map(String::as_str));
+        rows.fields(self.plane.names.axes.iter().map(String::as_str));
         rows.fields(["event_count", "outcome", "end_mode", "end_time"]);
         rows.fields(self.plane.system.components.iter().map(|it| format!("end_{}", it.name)));
         rows.end();
@@ -202,8 +208,8 @@ impl Map<'_> {
         let (low, high) = (self.plane.window.low, self.plane.window.high);
         let panel = |heading, values| MapPanel {
             heading,
-            horizontal: MapAxis { name: &self.plane.axes[0], range: (low.x, high.x) },
-            vertical: MapAxis { name: &self.plane.axes[1], range: (low.y, high.y) },
+            horizontal: MapAxis { name: &self.plane.names.axes[0], range: (low.x, high.x) },
+            vertical: MapAxis { name: &self.plane.names.axes[1], range: (low.y, high.y) },
             columns,
             rows,
             values,
@@ -219,7 +225,7 @@ impl Map<'_> {
             }
         }
         let size = format!("{} × {} runs", self.x.len(), self.y.len());
-        let title = format!("{}: {size}", self.plane.name);
+        let title = format!("{}: {size}", self.plane.names.family);
         Ok(plot.write(map::draw(&title, &panels))?)
     }
 }

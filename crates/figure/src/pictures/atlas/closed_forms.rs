@@ -6,7 +6,7 @@ use stickslip_plane::atlas::{BoundaryKind, Frame};
 
 use crate::canvas::Legend;
 use crate::canvas::panel::Panel;
-use crate::canvas::style::{BOUNDARY_END, BOUNDARY_STICK, CLOSED_FORM};
+use crate::canvas::style::{self, CLOSED_FORM};
 use crate::canvas::svg::Svg;
 
 /// Height and half the width of the mark of a limit.
@@ -105,6 +105,6 @@ impl ClosedForms {
 /// Draws an arrow that points up to a place.
 fn arrow(svg: &mut Svg, (x, y): (f64, f64), kind: BoundaryKind) {
     let (height, half) = LIMIT;
-    let stroke = if kind == BoundaryKind::StickGraze { BOUNDARY_STICK } else { BOUNDARY_END };
-    svg.area([(x, y), (x + half, y + height), (x - half, y + height)], stroke.colour);
+    let colour = style::boundary(kind).colour;
+    svg.area([(x, y), (x + half, y + height), (x - half, y + height)], colour);
 }

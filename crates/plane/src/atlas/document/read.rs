@@ -1,18 +1,18 @@
 //! How an atlas is read back from its document.
 
-use std::collections::BTreeMap;
-
 use stickslip_model::Contact;
-use stickslip_tracer::{Curve, Finding, Location, Node, Point, Subdivision, Vertex};
+use stickslip_tracer::{Curve, Extremum, Finding, Location, Node, Point, Subdivision, Vertex};
 
 use super::error::DocumentError;
 use super::layout::{
-    BoundaryFields, Document, RegionFields, SCHEMA, Switching, VertexFields, WindowFields, in_order,
+    BoundaryFields, Document, ExtremalParameter, ExtremumFields, RegionFields, SCHEMA, Switching,
+    VertexFields, WindowFields, in_order,
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, Regions, switch_count};
 use crate::chart::Chart;
+use crate::family::CollisionPlane;
 use crate::range::Range;
 
 impl TryFrom<Document> for Atlas {
@@ -35,9 +35,10 @@ impl TryFrom<Document> for Atlas {
         if !(tolerance > 0.0 && tolerance <= 1e-6) {
             return Err(DocumentError::Tolerance { tolerance });
         }
-        frame.require_wide()?;
         let chart = document.chart.unwrap_or(Chart::PLAIN);
-        require_chart(&frame, &chart)?;
+        let plane = frame.plane()?.with_chart(chart);
+        plane.sheet().require_wide(plane.names())?;
+        require_chart(&plane)?;
         let curves = document.boundaries.iter().enumerate();
         let curves = curves.map(|(index, boundary)| curve(&chart, index, boundary));
         let curves = curves.collect::<Result<Vec<_>, _>>()?;
@@ -45,15 +46,20 @@ impl TryFrom<Document> for Atlas {
         let vertices = vertices.map(|(index, fields)| vertex(&chart, index, fields));
         let vertices = vertices.collect::<Result<Vec<_>, _>>()?;
         let nodes = curves.iter().flat_map(|curve| &curve.nodes);
-        let resolution = frame.sheet(&chart).resolution_of(nodes, tolerance);
-        let regions = Subdivision::new(frame.window(&chart), curves, vertices, resolution)?;
+        let resolution = plane.sheet().resolution_of(nodes, tolerance);
+        let mut regions = Subdivision::new(plane.window(), curves, vertices, resolution)?;
         // Thin regions were found there by collisions, or there would be an objection above.
         let is_thin = |finding: &&Finding<_>| matches!(finding, Finding::Thin { .. });
         if let Some(finding) = regions.findings().iter().find(|finding| !is_thin(finding)) {
             return Err(DocumentError::Finding(finding.clone()));
         }
-        let unbounded = unbounded(&chart, &regions, document.regions)?;
-        Ok(Self { frame, chart, tolerance, regions, unbounded })
+        require_regions(&chart, &regions, &document.regions)?;
+        if let Some(whole) = document.regions.first() {
+            regions.label_rest(|_| Some(whole.switching.itinerary.clone()));
+        }
+        let extrema = document.extrema.iter().map(|one| extremum(&chart, one)).collect();
+        let report = document.verification;
+        Ok(Self { plane, ratio: None, tolerance, regions, extrema, report })
     }
 }
 
@@ -77,8 +83,8 @@ fn frame(window: &WindowFields) -> Result<Frame, DocumentError> {
 }
 
 /// Refuses a chart that does not map the window onto an area.
-fn require_chart(frame: &Frame, chart: &Chart) -> Result<(), DocumentError> {
-    let window = frame.window(chart);
+fn require_chart(plane: &CollisionPlane) -> Result<(), DocumentError> {
+    let (window, chart) = (plane.window(), plane.chart());
     let extent = window.extent();
     let corners = [window.low, window.high];
     let finite = corners.iter().all(|corner| corner.iter().all(|part| part.is_finite()));
@@ -123,25 +129,32 @@ fn vertex(
     Ok(Vertex { point, kind: vertex.kind.into(), margins: Vec::new() })
 }
 
-/// Compares the regions that the boundaries make with those that the document lists. The result has
-/// the itineraries of the regions that no boundary touches.
-fn unbounded(
+/// The point at which a boundary turns back, in traced coordinates.
+fn extremum(chart: &Chart, fields: &ExtremumFields) -> Extremum {
+    let point = chart.point(fields.kappa, fields.psi);
+    Extremum {
+        curve: fields.boundary,
+        axis: usize::from(fields.of == ExtremalParameter::Psi),
+        point,
+    }
+}
+
+/// Refuses a list of other regions than the boundaries make.
+fn require_regions(
     chart: &Chart,
     regions: &Regions,
-    listed: Vec<RegionFields>,
-) -> Result<BTreeMap<usize, String>, DocumentError> {
+    listed: &[RegionFields],
+) -> Result<(), DocumentError> {
     if listed.len() != regions.regions().len() {
         let (listed, made) = (listed.len(), regions.regions().len());
         return Err(DocumentError::Regions { listed, made });
     }
-    let mut unbounded = BTreeMap::new();
-    for (index, region) in listed.into_iter().enumerate() {
+    for (index, region) in listed.iter().enumerate() {
         require_id("regions", index, region.id)?;
-        let itinerary = checked(region.switching, || format!("regions[{index}]"))?;
+        let itinerary = checked(region.switching.clone(), || format!("regions[{index}]"))?;
         let sample = positive(chart, region.sample, || format!("regions[{index}].sample"))?;
         let made = &regions.regions()[index];
-        let around = &made.label;
-        let fits = around.as_ref().is_none_or(|around| *around == itinerary);
+        let fits = made.label.as_ref().is_none_or(|around| *around == itinerary);
         let is_there = match regions.locate(&sample) {
             Location::Region(found) => found == index,
             Location::OnBoundary { curve, .. } => {
@@ -153,11 +166,8 @@ fn unbounded(
         if !fits || !is_there {
             return Err(DocumentError::Region { region: index });
         }
-        if around.is_none() {
-            unbounded.insert(index, itinerary);
-        }
     }
-    Ok(unbounded)
+    Ok(())
 }
 
 /// The itinerary, if it is one and has as many switches as the count says.

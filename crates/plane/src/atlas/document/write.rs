@@ -10,19 +10,18 @@ use super::layout::{
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, switch_count};
-use crate::atlas::tracing::VerifiedAtlas;
 use crate::chart::Chart;
 
 impl Document {
-    /// The document of an atlas, with the result of its verification.
+    /// The document of an atlas of κ and ψ.
     #[must_use]
-    pub fn new(verified: &VerifiedAtlas) -> Self {
-        let VerifiedAtlas { atlas, extrema, report } = verified;
-        let Atlas { frame, chart, tolerance, regions, .. } = atlas;
+    pub fn new(atlas: &Atlas) -> Self {
+        let Atlas { plane, tolerance, regions, extrema, report, .. } = atlas;
+        let chart = plane.chart();
         let boundaries = regions.curves().iter().enumerate();
         Self {
             schema: SCHEMA.to_owned(),
-            window: WindowFields::new(frame),
+            window: WindowFields::new(&atlas.frame()),
             chart: (*chart != Chart::PLAIN).then_some(*chart),
             tolerance: *tolerance,
             boundaries: boundaries
@@ -61,7 +60,7 @@ impl BoundaryFields {
             Some(Meeting::WindowEdge | Meeting::WindowCorner) => BoundaryEnd::Window,
             Some(_) => BoundaryEnd::Vertex,
         };
-        let point = |node: &Node| atlas.frame.snapped(&atlas.chart, &node.point);
+        let point = |node: &Node| atlas.plane.sheet().snapped(&node.point);
         Self {
             id,
             kind: curve.margin,
@@ -78,7 +77,7 @@ impl BoundaryFields {
 
 /// All vertices, each with the boundaries that start or end there.
 fn vertices(atlas: &Atlas) -> Vec<VertexFields> {
-    let Atlas { frame, chart, regions, .. } = atlas;
+    let Atlas { plane, regions, .. } = atlas;
     let mut ending = vec![Vec::new(); regions.vertices().len()];
     for (id, curve) in regions.curves().iter().enumerate() {
         for vertex in curve.ends.into_iter().flatten() {
@@ -90,7 +89,7 @@ fn vertices(atlas: &Atlas) -> Vec<VertexFields> {
     let vertices = regions.vertices().iter().zip(ending).enumerate();
     vertices
         .map(|(id, (vertex, boundaries))| {
-            let [kappa, psi] = frame.snapped(chart, &vertex.point);
+            let [kappa, psi] = plane.sheet().snapped(&vertex.point);
             VertexFields { id, kind: vertex.kind.into(), kappa, psi, boundaries }
         })
         .collect()
@@ -113,7 +112,7 @@ impl RegionFields {
         Self {
             id,
             switching: Switching::new(atlas.itinerary(id)),
-            sample: atlas.chart.parameters(&region.sample),
+            sample: atlas.plane.parameters(&region.sample),
             area_share: region.area / atlas.regions.window().area(),
             boundaries,
         }

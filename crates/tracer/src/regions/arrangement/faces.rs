@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::lengths::angle;
 use crate::regions::arrangement::piece::{Edge, Piece};
 use crate::regions::arrangement::slabs::Slabs;
 use crate::regions::arrangement::union::DisjointSets;
@@ -148,8 +149,6 @@ impl Faces {
 /// The sides that lead into each other at the vertices on the frame of the window where the order
 /// of edges is sure: one edge leaves the frame there, or several in different directions.
 fn turns(pieces: &[Piece], edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
-    /// The least angle between two edges, in radians.
-    const APART: f64 = 1e-3;
     // The left sides of edges, seen from a vertex at which they begin or end, and their directions.
     let mut around: BTreeMap<usize, Vec<(usize, Point)>> = BTreeMap::new();
     for (edge, ends) in edges.iter().enumerate().filter_map(|(edge, own)| Some((edge, own.ends?))) {
@@ -168,7 +167,8 @@ fn turns(pieces: &[Piece], edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 
         let angle = |away: &Point| begins.1.perp(away).atan2(begins.1.dot(away));
         inner.sort_by(|(_, one), (_, other)| angle(one).total_cmp(&angle(other)));
         let order: Vec<_> = [begins].into_iter().chain(inner).chain([ends]).collect();
-        let apart = |pair: &[(usize, Point)]| angle(&pair[1].1) - angle(&pair[0].1) > APART;
+        let apart =
+            |pair: &[(usize, Point)]| angle(&pair[1].1) - angle(&pair[0].1) > angle::ORDERED;
         if order.len() == 3 || order.windows(2).all(apart) {
             let next = order.iter().cycle().skip(1);
             turns.extend(order.iter().zip(next).map(|(one, other)| [one.0, other.0 ^ 1]));

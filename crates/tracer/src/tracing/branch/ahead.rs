@@ -5,7 +5,7 @@ use crate::curve::Node;
 use crate::family::Family;
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
-use crate::tracing::end::{SHORTEST, Stop};
+use crate::tracing::end::Stop;
 use crate::tracing::fit::mirrored;
 use crate::tracing::runs::Traced;
 use crate::window::Point;
@@ -15,7 +15,7 @@ impl<F: Family> Track<'_, '_, F> {
     pub(crate) fn passed_stop(&self, arc: &Cubic) -> Option<usize> {
         let [low, high] = arc.bounds();
         let passed = |stop: &Stop| {
-            let near = stop.uncertainty + SHORTEST * self.runs.scale;
+            let near = stop.uncertainty + self.runs.lengths.same;
             let inside = (0..2).all(|axis| {
                 stop.point[axis] > low[axis] - near && stop.point[axis] < high[axis] + near
             });
@@ -43,13 +43,11 @@ impl<F: Family> Track<'_, '_, F> {
     /// the shortest step fails. Where boundaries touch, the strip between them is narrower than
     /// runs can resolve before it ends.
     pub(crate) fn touched(&self, from: &FootholdOf<F>) -> Traced<Option<usize>, F> {
-        /// The greatest distance of such a vertex, as a fraction of the window's shorter extent.
-        const FARTHEST: f64 = 1e-3;
         let distance = |index: usize| (self.stops[index].point - from.node.point).norm();
         let mut nearest: Option<usize> = None;
         for (index, stop) in self.stops.iter().enumerate() {
             if nearest.is_none_or(|other| distance(index) < distance(other))
-                && self.leads_to(from, stop, FARTHEST * self.runs.scale)?.is_some()
+                && self.leads_to(from, stop, self.runs.lengths.around)?.is_some()
             {
                 nearest = Some(index);
             }
@@ -69,7 +67,7 @@ impl<F: Family> Track<'_, '_, F> {
         let chord = stop.point - from.node.point;
         let length = chord.norm();
         let angle = chord.angle(&from.node.tangent);
-        let ahead = length > SHORTEST * runs.scale
+        let ahead = length > runs.lengths.same
             && length <= farthest
             && angle <= 0.5 * runs.options.max_angle;
         if !ahead {
@@ -98,10 +96,6 @@ impl<F: Family> Track<'_, '_, F> {
         arc: &Cubic,
         apart: f64,
     ) -> Traced<bool, F> {
-        /// The distance of the last place from the vertex, as a fraction of the window's shorter
-        /// extent. If two curves touch at the vertex with a curvature of 1, the region between them
-        /// is still wider there than the error of margins.
-        const CLOSE: f64 = 3e-5;
         let chord = arc.chord();
         for theta in [0.5, 0.9, 0.99] {
             let is_apart = (1.0 - theta) * chord >= apart;
@@ -109,7 +103,7 @@ impl<F: Family> Track<'_, '_, F> {
                 return Ok(false);
             }
         }
-        let close = (CLOSE * self.runs.scale).max(apart) / chord;
+        let close = self.runs.lengths.clear.max(apart) / chord;
         Ok(close > 0.5 || self.holds_closely(from, &arc.at(1.0 - close), 0.3 * chord)?)
     }
 
@@ -152,7 +146,7 @@ impl<F: Family> Track<'_, '_, F> {
     /// Whether `arc` passes through the start of the branch, in the direction of the branch there.
     pub(crate) fn passes_origin(&self, arc: &Cubic) -> bool {
         let (theta, distance) = arc.closest(&self.origin.point);
-        distance < 1e-8 * self.runs.scale && theta > 0.0 && {
+        distance < self.runs.lengths.touch && theta > 0.0 && {
             arc.tangent(theta).dot(&self.origin.tangent) > 0.5
         }
     }

@@ -10,13 +10,9 @@ use crate::curve::VertexKind;
 use crate::family::Family;
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::crossing;
-use crate::tracing::end::{SHORTEST, Special};
+use crate::tracing::end::Special;
 use crate::tracing::runs::Traced;
 use crate::window::Point;
-
-/// A cubic into a cusp is not searched for anything else if it is shorter than this fraction of the
-/// window's shorter extent: the wedge of a cusp may be too thin for labels there.
-const TIP: f64 = 1e-5;
 
 /// The cusps ahead of `from`, within `reach` or close by, for which the family knows what vanishes
 /// there: each place and the largest error of the place, nearest first.
@@ -27,10 +23,10 @@ pub(crate) fn ahead<F: Family>(
 ) -> Traced<Vec<(Point, f64)>, F> {
     let runs = track.runs;
     let (start, along) = (from.node.point, from.node.tangent);
-    let reach = reach.max(TIP * runs.scale);
+    let reach = reach.max(runs.lengths.close);
     let mut places = Vec::new();
     for [one, two] in runs.cusps(&track.margin) {
-        let found = crossing(runs, [&one, &two], &start, &along, runs.scale, reach)?;
+        let found = crossing(runs, [&one, &two], &start, &along, runs.lengths.scale, reach)?;
         places.extend(found.filter(|(point, _)| (point - start).dot(&along) > 0.0));
     }
     let progress = |point: &Point| (point - start).dot(&along);
@@ -45,7 +41,7 @@ pub(crate) fn beyond<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
 ) -> Traced<Option<Special<F::Margin>>, F> {
-    for (point, uncertainty) in ahead(track, from, track.runs.scale)? {
+    for (point, uncertainty) in ahead(track, from, track.runs.lengths.scale)? {
         let arc = Cubic::between(&from.node, &track.end_node(&from.node, &point)?);
         if follows(track, from, &arc, track.runs.options.interpolation)? {
             return Ok(Some(end(track, point, uncertainty)));
@@ -81,7 +77,8 @@ fn end<F: Family>(track: &Track<'_, '_, F>, point: Point, uncertainty: f64) -> S
 ///
 /// Towards a cusp a boundary bends ever more, and its margin ceases to exist. So the cusp ends the
 /// branch only if the cubic that leads into it is as close to the boundary as the options ask, or
-/// if it is shorter than [`TIP`] and no farther from the boundary than places that count as one.
+/// if its wedge is too thin for labels and it is no farther from the boundary than places that
+/// count as one.
 pub(crate) fn reached<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -89,8 +86,8 @@ pub(crate) fn reached<F: Family>(
 ) -> Traced<Option<Special<F::Margin>>, F> {
     let runs = track.runs;
     let arc = Cubic::between(&from.node, &track.end_node(&from.node, &point)?);
-    let tip = arc.chord() <= TIP * runs.scale;
-    let error = runs.options.interpolation.max(if tip { SHORTEST * runs.scale } else { 0.0 });
+    let tip = arc.chord() <= runs.lengths.close;
+    let error = runs.options.interpolation.max(if tip { runs.lengths.same } else { 0.0 });
     if !follows(track, from, &arc, error)? {
         return Ok(None);
     }

@@ -7,6 +7,7 @@
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
+use crate::lengths::Lengths;
 use crate::tracing::branch::touch::{graze, narrow};
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::{correct, crossing, stationary};
@@ -14,17 +15,6 @@ use crate::tracing::end::Special;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{bisect, identify};
 use crate::window::Point;
-
-/// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
-/// tried as touches. The values of margins determine the place of a touch only to half the digits.
-pub(crate) const TANGENTIAL: f64 = 1e-9;
-/// The largest error of a place at which boundaries touch, as a fraction of the window's shorter
-/// extent. The place is where the gradients are parallel, and a gradient is one-sided where its
-/// margin ceases to exist nearby. A third curve that ends there gives a better place.
-const TOUCH: f64 = 1e-8;
-/// A crossing with a larger uncertainty, as a fraction of the window's shorter extent, does not
-/// count: the two margins are almost multiples of each other.
-const VAGUE: f64 = 1e-5;
 
 /// What a failed step may have run into.
 #[derive(Clone, Copy)]
@@ -60,7 +50,7 @@ pub(crate) fn locate<F: Family>(
         && track.runs.margin(&point, &track.margin)?.is_some_and(|value| {
             value.abs() <= (1e-3 * h * from.gradient.norm()).max(track.runs.options.noise)
         })
-        && (point - from.node.point).dot(&from.node.tangent) > -1e-9 * track.runs.scale
+        && (point - from.node.point).dot(&from.node.tangent) > -track.runs.lengths.same
         && flattens(track, from, &point)?
     {
         return Ok(Some(degenerate(track, point, 0.0, true)));
@@ -102,7 +92,8 @@ fn among<F: Family>(
         Special { point, kind: VertexKind::Crossing, margins, uncertainty, solved: true }
     };
     if let Some((mut point, mut off, margin)) = first(track, from, crossings)? {
-        if off > TANGENTIAL * track.runs.scale
+        // The values of margins determine the place of a touch only to half the digits.
+        if off > track.runs.lengths.same
             && let Some(touch) = graze(track, from, beyond, &margin, h)?
             && (touch - point).norm() <= 10.0 * off
         {
@@ -118,7 +109,7 @@ fn among<F: Family>(
         if narrow::<F>(from, beyond, &margin, h)
             && let Some(point) = graze(track, from, beyond, &margin, h)?
         {
-            touches.push((point, TOUCH * track.runs.scale, margin));
+            touches.push((point, track.runs.lengths.touch, margin));
         }
     }
     Ok(first(track, from, touches)?.map(|(point, off, margin)| special(point, off, margin)))
@@ -134,7 +125,8 @@ fn first<F: Family>(
     mut places: Vec<Met<F::Margin>>,
 ) -> Traced<Option<Met<F::Margin>>, F> {
     let progress = |point: &Point| (point - from.node.point).dot(&from.node.tangent);
-    places.retain(|(_, off, _)| *off <= VAGUE * track.runs.scale);
+    // Where a crossing has a larger error, the two margins are almost multiples of each other.
+    places.retain(|(_, off, _)| *off <= track.runs.lengths.close);
     places.sort_by(|(one, ..), (two, ..)| progress(one).total_cmp(&progress(two)));
     for place in places {
         if is_last(track, from, &place.0, 3.0 * place.1)? {
@@ -157,10 +149,7 @@ pub(crate) fn give_up<F: Family>(
     beyond: Option<&FootholdOf<F>>,
     h: f64,
 ) -> Traced<Special<F::Margin>, F> {
-    /// The error of the place, as a fraction of the window's shorter extent: beside a cusp a margin
-    /// exists in a wedge that is too narrow to follow to its tip.
-    const TIP: f64 = 1.5e-7;
-    let scale = track.runs.scale;
+    let Lengths { around, piece, half, .. } = track.runs.lengths;
     if let Some(beyond) = beyond
         && let [other, ..] = &wedge(track, beyond)?[..]
     {
@@ -176,15 +165,15 @@ pub(crate) fn give_up<F: Family>(
     };
     let (mut exists, mut point) = (0.0, from.node.point);
     let mut length = h;
-    while length < 1e-3 * scale {
+    while length < around {
         match place(length)? {
             Some(next) => (exists, point) = (length, next),
             None => break,
         }
         length *= 4.0;
     }
-    if length >= 1e-3 * scale {
-        return Ok(degenerate(track, from.node.point, 1e-6 * scale, false));
+    if length >= around {
+        return Ok(degenerate(track, from.node.point, piece, false));
     }
     while length - exists > track.runs.options.tolerance {
         let middle = 0.5 * (exists + length);
@@ -197,7 +186,8 @@ pub(crate) fn give_up<F: Family>(
             None => length = middle,
         }
     }
-    Ok(degenerate(track, point, TIP * scale, true))
+    // Beside a cusp a margin exists in a wedge that is too narrow to follow to its tip.
+    Ok(degenerate(track, point, 1.5 * half, true))
 }
 
 fn degenerate<F: Family>(
@@ -222,7 +212,7 @@ pub(crate) fn edge<F: Family>(
         if point[axis] - low < high - point[axis] { low } else { high }
     };
     let corner = Point::new(nearest(0), nearest(1));
-    let at_corner = (point - corner).norm() < 1e-9 * runs.scale;
+    let at_corner = (point - corner).norm() < runs.lengths.same;
     Special {
         point: if at_corner { corner } else { *point },
         kind: if at_corner { VertexKind::WindowCorner } else { VertexKind::WindowEdge },
@@ -261,7 +251,7 @@ fn meet<F: Family>(
         return Ok(None);
     };
     let progress = (point - start).dot(&from.node.tangent);
-    let slack = 1e-9 * runs.scale;
+    let slack = runs.lengths.same;
     Ok((progress > -slack && progress < h + slack).then_some((point, off)))
 }
 
@@ -281,11 +271,11 @@ fn is_last<F: Family>(
     let node = Node { point: *point, tangent: track.tangent(&gradient) };
     let length = (point - from.node.point).norm();
     let arc = Cubic::between(&from.node, &node);
-    if length > 1e-6 * runs.scale && !track.is_clear(from, &arc, apart)? {
+    if length > runs.lengths.piece && !track.is_clear(from, &arc, apart)? {
         return Ok(false);
     }
-    let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale).max(apart);
-    Ok(!track.holds_closely(from, &after, 0.3 * length + 1e-6 * runs.scale)?)
+    let after = point + node.tangent * (0.03 * length).max(runs.lengths.piece).max(apart);
+    Ok(!track.holds_closely(from, &after, 0.3 * length + runs.lengths.piece)?)
 }
 
 /// The margins that separate a thin region beside `place` from the region with the branch's label
@@ -299,7 +289,7 @@ fn wedge<F: Family>(track: &Track<'_, '_, F>, place: &FootholdOf<F>) -> Traced<V
             continue;
         }
         let mut offset = 4.0 * runs.options.offset;
-        while offset < 1e-3 * runs.scale {
+        while offset < runs.lengths.around {
             let segment = [0.25 * offset, offset].map(|offset| place.node.point + normal * offset);
             let labels = [runs.label(&segment[0])?, runs.label(&segment[1])?];
             if labels[1] == track.sides[side] && labels[0] != labels[1] {

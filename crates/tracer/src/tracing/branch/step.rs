@@ -5,7 +5,6 @@ use crate::curve::Node;
 use crate::family::Family;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, correct_on_edge};
-use crate::tracing::end::SHORTEST;
 use crate::tracing::fit::{SHOWING, SHOWN};
 use crate::tracing::runs::Traced;
 use crate::window::{Point, Window};
@@ -46,8 +45,8 @@ impl<F: Family> Track<'_, '_, F> {
             exit = exit.min(room.max(0.0) / speed.abs());
         }
         self.step
-            .min(self.runs.options.max_step * self.runs.scale)
-            .min(exit + 1e-3 * self.runs.scale)
+            .min(self.runs.options.max_step * self.runs.lengths.scale)
+            .min(exit + self.runs.lengths.around)
     }
 
     /// Tries a step of length `h`.
@@ -101,7 +100,7 @@ impl<F: Family> Track<'_, '_, F> {
                     let end = self.end_node(&from.node, &self.stops[index].point)?;
                     let arc = Cubic::between(&from.node, &end);
                     // Another special point lies before the vertex. Shorter steps find it.
-                    if arc.chord() > 1e-6 * runs.scale && !self.is_clear(from, &arc, 0.0)? {
+                    if arc.chord() > runs.lengths.piece && !self.is_clear(from, &arc, 0.0)? {
                         return Ok(Attempt::Lost);
                     }
                 }
@@ -125,7 +124,7 @@ impl<F: Family> Track<'_, '_, F> {
     pub(crate) fn exit_before(&self, point: &Point) -> Traced<Option<Point>, F> {
         let Some(from) = self.footholds.back() else { return Ok(None) };
         let Window { low, high } = self.runs.window;
-        let slack = Point::repeat(SHORTEST * self.runs.scale);
+        let slack = Point::repeat(self.runs.lengths.same);
         if (Window { low: low - slack, high: high + slack }).contains(point) {
             return Ok(None);
         }

@@ -9,27 +9,17 @@
 //! followed along the boundary of the graze, by the polynomial in √r through the margin at four
 //! distances, and its zero is simple. Two distances must agree on it.
 
+use nalgebra::Vector1;
+
+use crate::conditions::{Limits, secant, solve};
 use crate::curve::VertexKind;
 use crate::family::Family;
+use crate::lengths::Lengths;
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
-use crate::tracing::end::{SHORTEST, Special};
+use crate::tracing::end::Special;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
-
-/// How far along the boundary the place is searched for, as a fraction of the window's shorter
-/// extent.
-const REACH: f64 = 0.1;
-/// The least distances from the boundary at which the margin is taken, as fractions of the same
-/// extent. A larger distance has a larger error of the polynomial, a smaller distance a larger
-/// error of the runs.
-const NEAR: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-/// The largest difference between the places that two such distances give, as a fraction of the
-/// same extent.
-const AGREEMENT: f64 = 1e-7;
-/// The distance beside the branch, as a fraction of the same extent, at which runs show what lies
-/// there.
-const ASIDE: f64 = 1e-5;
 
 /// A place where a boundary begins on another one with its tangent, and whether it lies ahead.
 pub(crate) type Tangency<Margin> = (Special<Margin>, bool);
@@ -133,7 +123,7 @@ fn behind_others<F: Family>(
     consider: &mut Consider<'_, F>,
 ) -> Traced<(), F> {
     let (runs, own, tangent) = (track.runs, &track.margin, &from.node.tangent);
-    let reach = ASIDE * runs.scale;
+    let reach = runs.lengths.close;
     let aside = from.gradient.normalize() * reach;
     let is_known = |margin: &F::Margin| {
         let mut known = from.sides.iter().flat_map(|run| &run.margins);
@@ -181,17 +171,17 @@ pub(crate) struct Root<'r, F: Family> {
 impl<F: Family> Root<'_, F> {
     /// The place along the boundary where m₀ vanishes, and its largest error.
     pub fn place(&self) -> Traced<Option<(f64, f64)>, F> {
+        let Lengths { piece, half, touch, same, solved, .. } = self.runs.lengths;
         let mut before = None;
         let mut best: Option<(f64, f64)> = None;
-        for near in NEAR {
+        // A larger distance has a larger error of the polynomial, a smaller one of the runs.
+        for near in [piece, half, touch, same, solved] {
             let place = self.zero(near)?;
             if let (Some(before), Some(place)) = (before, place) {
                 let difference: f64 = place - before;
-                let (difference, shortest) = (difference.abs(), SHORTEST * self.runs.scale);
-                if difference <= AGREEMENT * self.runs.scale
-                    && best.is_none_or(|(_, other)| difference < other)
-                {
-                    best = Some((place, difference.max(shortest)));
+                let difference = difference.abs();
+                if difference <= half && best.is_none_or(|(_, other)| difference < other) {
+                    best = Some((place, difference.max(same)));
                 }
             }
             before = place;
@@ -201,41 +191,31 @@ impl<F: Family> Root<'_, F> {
 
     /// The zero of m₀ by the secant method.
     fn zero(&self, near: f64) -> Traced<Option<f64>, F> {
-        /// The first steps that are tried: the margin may exist on one side only.
-        const STEPS: [f64; 4] = [1e-6, -1e-6, 1e-8, -1e-8];
-        let [reach, shortest] = [REACH, SHORTEST].map(|part| part * self.runs.scale);
-        let close = 0.01 * shortest;
-        let mut last = 0.0;
-        let Some(mut before) = self.limit(last, near)? else { return Ok(None) };
-        let mut second = None;
-        for step in STEPS.map(|step| step * self.runs.scale) {
-            second = self.limit(step, near)?.map(|value| (step, value));
-            if second.is_some() {
-                break;
+        let Lengths { scale, piece, touch, same, .. } = self.runs.lengths;
+        let mut before = None;
+        let limits = Limits { stalled: same, rounds: 20, ..Limits::new(0.1 * scale, 0.01 * same) };
+        let zero: Traced<_, F> = solve(&Vector1::zeros(), &limits, |at, _| {
+            let Some(value) = self.limit(at.x, near)? else { return Ok(None) };
+            let mut slope = secant(&mut before, at.x, value);
+            // The margin may exist on one side only.
+            let mut steps = [piece, -piece, touch, -touch].into_iter();
+            while slope.is_none()
+                && let Some(step) = steps.next()
+            {
+                if let Some(ahead) = self.limit(at.x + step, near)? {
+                    slope = Some((ahead - value) / step);
+                    before = Some([at.x + step, ahead]);
+                }
             }
-        }
-        let Some((mut here, mut value)) = second else { return Ok(None) };
-        for _ in 0..20 {
-            let next = here - value * (here - last) / (value - before);
-            let within = next.abs() <= reach;
-            if !within {
-                return Ok(None);
-            }
-            // Where the steps no longer shrink, they are errors of the runs.
-            let (shift, shift_before) = ((next - here).abs(), (here - last).abs());
-            if shift <= close || (shift <= shortest && shift >= 0.5 * shift_before) {
-                return Ok(Some(next));
-            }
-            let Some(ahead) = self.limit(next, near)? else { return Ok(None) };
-            (last, before, here, value) = (here, value, next, ahead);
-        }
-        Ok(None)
+            Ok(Some((Vector1::new(value), slope.map(Vector1::new))))
+        });
+        Ok(zero?.ok().map(|zero| zero.at.x))
     }
 
     /// The point of the boundary of the graze at a place along it.
     pub fn point(&self, place: f64) -> Traced<Option<Point>, F> {
         let guess = self.foot + self.along * place;
-        let reach = 0.3 * place.abs() + 1e-6 * self.runs.scale;
+        let reach = 0.3 * place.abs() + self.runs.lengths.piece;
         Ok(correct(self.runs, self.graze, &guess, &self.gradient, reach)?.map(|found| found.point))
     }
 
@@ -243,7 +223,7 @@ impl<F: Family> Root<'_, F> {
     /// four distances.
     fn limit(&self, place: f64, near: f64) -> Traced<Option<f64>, F> {
         let Some(point) = self.point(place)? else { return Ok(None) };
-        let inwards = self.gradient.normalize() * (self.side * near * self.runs.scale);
+        let inwards = self.gradient.normalize() * (self.side * near);
         let mut values = [(0.0, 0.0); 4];
         for (times, value) in [1.0, 4.0, 9.0, 16.0].into_iter().zip(&mut values) {
             let beside = point + inwards * times;

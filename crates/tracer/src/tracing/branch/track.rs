@@ -107,7 +107,7 @@ impl<F: Family> Track<'_, '_, F> {
         let before = self.footholds.len().checked_sub(2).map(|index| self.footholds[index].node);
         if let Some(before) = before {
             let arc = Cubic::between(&before, node);
-            if h < 2.5 * arc.chord() && arc.chord() > 1e-6 * self.runs.scale {
+            if h < 2.5 * arc.chord() && arc.chord() > self.runs.lengths.piece {
                 return arc.at(1.0 + h / arc.chord());
             }
         }

@@ -3,9 +3,10 @@
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::Family;
+use crate::lengths::Lengths;
 use crate::tracing::branch::Branch;
 use crate::tracing::corrector::correct;
-use crate::tracing::end::{End, SHORTEST, Special};
+use crate::tracing::end::{End, Special};
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds_closely, identify};
@@ -26,8 +27,9 @@ impl<F: Family> Tracer<'_, F> {
         let length = (b - a).norm();
         // In a gap behind a curve runs may not resolve the curve. On a short segment the gap is a
         // small part of it, but at least twice the error of the curve.
-        let short = (2e-3 * length).max(2.0 * self.runs.options.interpolation);
-        let gap = (2e-9 * self.runs.scale).min(short) / length;
+        let short =
+            (2.0 * Lengths::PARTS.around * length).max(2.0 * self.runs.options.interpolation);
+        let gap = (2.0 * self.runs.lengths.same).min(short) / length;
         let [mut label, last] = labels;
         let mut place = 0.0;
         for _ in 0..CHANGES {
@@ -133,7 +135,7 @@ impl<F: Family> Tracer<'_, F> {
     /// are distinguished.
     fn is_along_edge(&self, nodes: &[Node]) -> bool {
         let Window { low, high } = self.runs.window;
-        let near = SHORTEST * self.runs.scale;
+        let near = self.runs.lengths.same;
         (0..2).any(|axis| {
             [low[axis], high[axis]]
                 .iter()
@@ -152,11 +154,12 @@ impl<F: Family> Tracer<'_, F> {
             let guess = Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
             let (guess, tangent, reach) = (guess.at(0.5), guess.tangent(0.5), guess.chord());
             let margin = self.runs.moved(&guess, &curve.margin)?;
-            let found = match self.runs.gradient(&guess, &margin, &tangent, self.runs.scale)? {
-                Some(gradient) => correct(&self.runs, &margin, &guess, &gradient, reach)?
-                    .map(|found| (found.point, gradient)),
-                None => None,
-            };
+            let found =
+                match self.runs.gradient(&guess, &margin, &tangent, self.runs.lengths.scale)? {
+                    Some(gradient) => correct(&self.runs, &margin, &guess, &gradient, reach)?
+                        .map(|found| (found.point, gradient)),
+                    None => None,
+                };
             let holds = match found {
                 Some((point, gradient)) => {
                     let [left, right] = curve.sides.clone();

@@ -6,11 +6,11 @@
 
 use crate::executor::Executor;
 use crate::family::Family;
-use crate::tracing::island;
 use crate::tracing::runs::{Sampled, Traced, checked};
-use crate::tracing::sliver;
-use crate::tracing::stage::Stage;
 use crate::tracing::tracer::Tracer;
+use crate::tracing::tracer::island;
+use crate::tracing::tracer::sliver;
+use crate::tracing::tracer::stage::Stage;
 use crate::watch::{Progress, Watch};
 use crate::window::Point;
 
@@ -108,7 +108,7 @@ impl<F: Family> Tracer<'_, F> {
     /// The places at the ends of all segments, a ten-millionth of the window's shorter extent
     /// inside the edges up to which boundaries are followed.
     fn edge_places(&self) -> Vec<Point> {
-        let inset = Point::repeat(1e-7 * self.runs.scale);
+        let inset = Point::repeat(self.runs.lengths.half);
         let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
         let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y), low];
         let parts = 2 * self.runs.options.cells;

@@ -2,6 +2,7 @@
 //! on the way.
 
 use crate::family::Family;
+use crate::lengths::Lengths;
 use crate::tracing::runs::{Runs, Sampled, Traced};
 use crate::window::Point;
 
@@ -58,17 +59,15 @@ impl<F: Family> Way<'_, F> {
         /// A margin does not vanish on the way if more than this part of it is left at the end of
         /// the way by linear extrapolation.
         const LEFT: f64 = 0.5;
-        /// The place at which the slope is taken if there is no place before.
-        const NEAR: f64 = 1e-3;
-        /// The greatest distance behind the zero at which the label is computed.
-        const FARTHEST: f64 = 1e-3;
+        // If there is no place before, the slope is taken near the first place.
+        let near = Lengths::PARTS.around;
         if value == 0.0 {
             return Ok(None);
         }
         let slope = match before {
             Some(before) => value - before,
-            None => match self.value(NEAR)? {
-                Some(near) => (near - value) / NEAR,
+            None => match self.value(near)? {
+                Some(ahead) => (ahead - value) / near,
                 None => return Ok(None),
             },
         };
@@ -81,7 +80,7 @@ impl<F: Family> Way<'_, F> {
         };
         let label = self.runs.label(&self.point(ahead))?;
         let mut offset = self.runs.options.offset / self.length();
-        while behind + offset < 1.0 && offset <= FARTHEST {
+        while behind + offset < 1.0 && offset <= near {
             let point = self.point(behind + offset);
             if self.runs.label(&point)? != label {
                 return Ok(Some(point));
@@ -95,14 +94,13 @@ impl<F: Family> Way<'_, F> {
     /// too long. `None` if the zero between them is known.
     fn bracket(&self, value: f64, mut slope: f64) -> Traced<Option<[f64; 2]>, F> {
         const ROUNDS: usize = 40;
-        const SHORTEST: f64 = 1e-9;
         let (mut low, mut height) = (0.0, value);
         // The nearest place without the margin.
         let mut end = None;
         for _ in 0..ROUNDS {
             let step = -1.05 * height / slope;
             let farthest = end.map_or(1.0, |end| f64::midpoint(low, end));
-            let comes_to_zero = step > 0.0 && farthest - low > SHORTEST;
+            let comes_to_zero = step > 0.0 && farthest - low > Lengths::PARTS.same;
             if !comes_to_zero {
                 return Ok(None);
             }

@@ -3,17 +3,17 @@
 use crate::curve::{Node, VertexKind};
 use crate::executor::Serial;
 use crate::family::{Family, FreeRun};
+use crate::lengths::Lengths;
 use crate::options::{TraceError, TraceOptions};
-use crate::tracing::branch::special::TANGENTIAL;
 use crate::tracing::builder::Builder;
 use crate::tracing::corrector::crossing;
 use crate::tracing::cut::cut;
-use crate::tracing::end::{SHORTEST, Special, Stop};
+use crate::tracing::end::{Special, Stop};
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::network::{NetworkOf, Unresolved};
 use crate::tracing::runs::{Runs, Sampled, Traced};
-use crate::tracing::stage::Stage;
 use crate::tracing::tracer::Tracer;
+use crate::tracing::tracer::stage::Stage;
 use crate::watch::Watch;
 use crate::window::{Point, Window};
 
@@ -32,9 +32,6 @@ pub fn trace<F: Family>(
     Ok(tracer.network())
 }
 
-/// The radii of the circles around a vertex, as fractions of the window's shorter extent.
-const CIRCLES: [f64; 2] = [1e-3, 1e-5];
-
 impl<'f, F: Family> Tracer<'f, F> {
     /// A tracer that has found nothing yet.
     ///
@@ -43,7 +40,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     pub fn new(family: &'f F, window: &Window, options: &TraceOptions) -> Traced<Self, F> {
         let runs = Runs::new(family, *window, *options)?;
         let outer = window.with_room(options.beyond);
-        let builder = Builder::new(outer, runs.scale);
+        let builder = Builder::new(outer, runs.lengths);
         Ok(Self {
             runs: runs.within(outer),
             builder,
@@ -144,14 +141,15 @@ impl<'f, F: Family> Tracer<'f, F> {
         let (point, kind) = (vertex.point, vertex.kind);
         self.probed += 1;
         if !kind.is_on_window() {
-            for radius in CIRCLES {
-                self.circle(&point, radius * self.runs.scale)?;
+            let Lengths { around, close, same, .. } = self.runs.lengths;
+            for radius in [around, close] {
+                self.circle(&point, radius)?;
             }
             // Curves that leave the window between the vertex and these circles.
             let Window { low, high } = self.runs.window;
-            let to_edge = (point - low).inf(&(high - point)).min() / self.runs.scale;
-            if (SHORTEST..CIRCLES[1]).contains(&to_edge) {
-                self.circle(&point, 0.5 * to_edge * self.runs.scale)?;
+            let to_edge = (point - low).inf(&(high - point)).min();
+            if (same..close).contains(&to_edge) {
+                self.circle(&point, 0.5 * to_edge)?;
             }
         }
         Ok(true)
@@ -174,7 +172,7 @@ impl<'f, F: Family> Tracer<'f, F> {
                 }
                 continue;
             }
-            let beside = (b - a).try_normalize(0.0).unwrap_or_default() * (1e-8 * self.runs.scale);
+            let beside = (b - a).try_normalize(0.0).unwrap_or_default() * self.runs.lengths.touch;
             let ends = [a - beside, b + beside];
             let labels = [self.runs.label(&ends[0])?, self.runs.label(&ends[1])?];
             if labels[0] == labels[1] && self.builder.passages(&ends[0], &ends[1]).is_empty() {
@@ -192,7 +190,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         let point = self.builder.stops[vertex].point;
         let distances = self.builder.stops.iter().map(|stop| (stop.point - point).norm());
         let nearest = distances.filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
-        if nearest < CIRCLES[0] * self.runs.scale {
+        if nearest < self.runs.lengths.around {
             self.circle(&point, 0.3 * nearest)?;
         }
         Ok(())
@@ -233,7 +231,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         let missed = arrivals.iter().map(|(node, _)| missed_by(node, &stop.point));
         let missed = missed.fold(0.0, f64::max);
         let uncertainty = stop.uncertainty.max(missed);
-        if uncertainty <= SHORTEST * self.runs.scale {
+        if uncertainty <= self.runs.lengths.same {
             return Ok(None);
         }
         let moved = |(node, margin): (Node, F::Margin)| {
@@ -251,11 +249,11 @@ impl<'f, F: Family> Tracer<'f, F> {
                     margins,
                     &node.point,
                     &node.tangent,
-                    self.runs.scale,
+                    self.runs.lengths.scale,
                     reach,
                 )?;
                 if let Some((point, off)) = found
-                    && off <= TANGENTIAL * self.runs.scale
+                    && off <= self.runs.lengths.same
                     && (point - stop.point).norm() <= farthest
                     && off < best.as_ref().map_or(0.2 * uncertainty, |best| best.1)
                 {

@@ -5,8 +5,8 @@ use crate::options::TraceOptions;
 use crate::tracing::builder::Builder;
 use crate::tracing::end::Stop;
 use crate::tracing::runs::Traced;
-use crate::tracing::state::{State, StateOf};
 use crate::tracing::tracer::Tracer;
+use crate::tracing::tracer::state::{State, StateOf};
 use crate::window::{Point, Window};
 
 impl<'f, F: Family> Tracer<'f, F> {
@@ -39,7 +39,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         let stops = state.network.vertices.iter().zip(state.uncertainties);
         let stops = stops.map(|(vertex, uncertainty)| Stop { point: vertex.point, uncertainty });
         tracer.builder =
-            Builder::of(stops.collect(), state.network, state.suspects, tracer.runs.scale);
+            Builder::of(stops.collect(), state.network, state.suspects, tracer.runs.lengths);
         tracer.probed = state.probed;
         tracer.stage = state.stage;
         if let Some(brackets) = state.brackets {

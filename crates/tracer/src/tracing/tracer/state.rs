@@ -2,7 +2,7 @@
 
 use crate::family::Family;
 use crate::tracing::network::Network;
-use crate::tracing::stage::Stage;
+use crate::tracing::tracer::stage::Stage;
 use crate::window::Point;
 
 /// A search that was interrupted between two tasks.

@@ -1,11 +1,12 @@
-//! Numbers in texts of pictures.
+//! Numbers in sentences, captions and pictures.
 
-/// `value` with at most `digits` significant digits (1 to 17), as [markup](super::markup).
+/// `value` with at most `digits` significant digits (1 to 17), with a superscript written as
+/// `^{…}`.
 ///
 /// Very large and very small numbers get a power of ten.
 ///
 /// ```
-/// use stickslip_figure::number;
+/// use stickslip_model::text::number;
 ///
 /// assert_eq!(number(-0.041652207, 4), "−0.04165");
 /// assert_eq!(number(-2.5e7, 4), "−2.5×10^{7}");
@@ -25,7 +26,8 @@ pub fn number(value: f64, digits: usize) -> String {
 }
 
 /// `number` with minus signs, which are as wide as plus signs, for hyphens.
-pub(crate) fn minus(number: &str) -> String {
+#[must_use]
+pub fn minus(number: &str) -> String {
     number.replace('-', "−")
 }
 

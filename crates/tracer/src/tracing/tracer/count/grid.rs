@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::regions::arrangement::union::DisjointSets;
-use crate::tracing::count::Count;
+use crate::tracing::tracer::count::Count;
 
 /// The number of places along a side before any is divided.
 const COARSEST: usize = 32;

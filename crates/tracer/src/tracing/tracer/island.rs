@@ -119,14 +119,14 @@ fn dive<F: Family>(
             Some(value) if sign * value < 0.0 => return Ok(Some(next)),
             Some(value) if sign * value < height => {
                 (point, height) = (next, sign * value);
-                h = (0.25 * step.norm()).min(h).max(1e-6 * runs.scale);
+                h = (0.25 * step.norm()).min(h).max(runs.lengths.piece);
             }
             _ => {
                 trust *= 0.25;
                 h *= 0.25;
             }
         }
-        if trust < 1e-6 * runs.scale || h < 1e-7 * runs.scale {
+        if trust < runs.lengths.piece || h < runs.lengths.half {
             return Ok(None);
         }
     }

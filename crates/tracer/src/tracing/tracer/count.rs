@@ -12,9 +12,9 @@ use std::collections::HashMap;
 use crate::executor::Executor;
 use crate::family::Family;
 use crate::options::TraceError;
-use crate::tracing::count::grid::{Grid, Place};
 use crate::tracing::runs::Traced;
 use crate::tracing::tracer::Tracer;
+use crate::tracing::tracer::count::grid::{Grid, Place};
 use crate::watch::Watch;
 use crate::window::Point;
 

@@ -1,0 +1,148 @@
+//! Files with random damage: none may be read as another result than was written.
+//!
+//! Each file is changed at up to four places: a byte is replaced, removed or repeated, a digit
+//! becomes another one, a piece is removed, repeated or moved, or the end is cut off. The reader
+//! may refuse it, or read what was written: spaces and the spelling of numbers do not matter.
+
+use std::error::Error;
+use std::fmt::Debug;
+use std::fs;
+use std::path::Path;
+
+use fastrand::Rng;
+use stickslip_files::input::atlas;
+use stickslip_files::map::{Parts, Results};
+use stickslip_plane::sealed;
+
+const BALL: &str = "parameter height = 1, e = 0.5, until = 3\nstate x = height, v = 0\nx' = v\n\
+                    v' = -1\nwhen x < 0 \"bounce\"\n  x := 0\n  v := -e*v\nend = until\n";
+
+/// What is made, by which command, and how it is read.
+const FILES: [(&str, &str, Reader); 4] = [
+    (
+        "family atlas",
+        "trace ball.slip --x e=0.2:0.5 --y height=0.9:1.2 --max-events 4 --out",
+        family_atlas,
+    ),
+    (
+        "stack of a system",
+        "stack ball.slip --x e=0.2:0.5 --y height=0.9:1.2 --max-events 4 \
+         --over until=1.95,2.2,3.2 --out",
+        document,
+    ),
+    ("stack over the damping", "stack --kappa 6:7 --psi 0.8:1 --damping 0.3,0.35 --out", document),
+    ("part of a map", "map --kappa 0:70 --psi 0:2.9 --size 30x20 --part 1/1 --out", part),
+];
+
+/// Reads a file, and says what is in it.
+type Reader = fn(&Path) -> Result<String, String>;
+
+fn family_atlas(path: &Path) -> Result<String, String> {
+    shown(atlas::read(path))
+}
+
+fn document(path: &Path) -> Result<String, String> {
+    let text = fs::read(path).map_err(|error| error.to_string())?;
+    sealed::check(&text).map_err(|error| error.to_string())?;
+    shown(serde_json::from_slice::<serde_json::Value>(&text))
+}
+
+fn part(path: &Path) -> Result<String, String> {
+    let parts = Parts::open(&[path.to_owned()], &program(path)).map_err(|e| e.to_string())?;
+    parts.check(|_| ()).map_err(|error| error.to_string())?;
+    let mut all = String::new();
+    let read = parts.each(|points, tile| {
+        all += &format!("{points:?} {tile:?}");
+        Ok(())
+    });
+    read.map(|()| all).map_err(|error| error.to_string())
+}
+
+fn shown<T: Debug, E: ToString>(read: Result<T, E>) -> Result<String, String> {
+    // Numbers in debug output have all their digits.
+    read.map(|found| format!("{found:?}")).map_err(|error| error.to_string())
+}
+
+/// The program that the undamaged part beside this one names.
+fn program(path: &Path) -> String {
+    let whole = fs::read(path.with_extension("whole")).unwrap_or_default();
+    let text = String::from_utf8_lossy(&whole);
+    let from = text.split_once(r#"{"task":"program: "#).map_or("", |(_, rest)| rest);
+    from.split_once(", tiles ").map_or("", |(program, _)| program).to_owned()
+}
+
+/// `file` with damage at up to four places.
+fn damaged(file: &[u8], random: &mut Rng) -> Vec<u8> {
+    let mut bytes = file.to_vec();
+    for _ in 0..random.usize(1..=4) {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = random.usize(..bytes.len());
+        let end = bytes.len().min(at + random.usize(1..60));
+        match random.u8(..8) {
+            0 => bytes[at] = random.u8(..),
+            1 => bytes[at] ^= 1 << random.u8(..8),
+            2 => {
+                bytes.remove(at);
+            }
+            3 => bytes.insert(at, bytes[random.usize(..bytes.len())]),
+            4 => drop(bytes.drain(at..end)),
+            5 => bytes.extend_from_within(at..end),
+            6 => {
+                let piece: Vec<u8> = bytes.drain(at..end).collect();
+                let to = random.usize(..=bytes.len());
+                bytes.splice(to..to, piece);
+            }
+            _ if random.u8(..20) == 0 => bytes.truncate(at),
+            _ => {
+                let digit = |byte: &&mut u8| byte.is_ascii_digit();
+                if let Some(byte) = bytes[at..].iter_mut().find(digit) {
+                    *byte = b'0' + random.u8(..10);
+                }
+            }
+        }
+    }
+    bytes
+}
+
+/// Damages each file so many times, and says what became of it.
+fn battery(times: usize) -> Result<(), Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let system = folder.path().join("ball.slip");
+    fs::write(&system, BALL)?;
+    for (index, (name, command, read)) in FILES.into_iter().enumerate() {
+        let path = folder.path().join(format!("{index}.file"));
+        let words = ["stickslip"].into_iter().chain(command.split_whitespace());
+        let words =
+            words.map(|word| if word == "ball.slip" { system.as_os_str() } else { word.as_ref() });
+        stickslip_cli::run(words.chain([path.as_os_str()]))?;
+        let file = fs::read(&path)?;
+        fs::copy(&path, path.with_extension("whole"))?;
+        let whole = read(&path)?;
+        let mut random = Rng::with_seed(u64::try_from(index)?);
+        let (mut refused, mut same, mut wrong) = (0, 0, 0);
+        for _ in 0..times {
+            fs::write(&path, damaged(&file, &mut random))?;
+            match read(&path) {
+                Err(_) => refused += 1,
+                Ok(found) if found == whole => same += 1,
+                Ok(_) => wrong += 1,
+            }
+        }
+        println!("{name}: {refused} refused, {same} read as written, {wrong} read as another");
+        if wrong > 0 || refused < times / 2 {
+            return Err(format!("{name}: {wrong} wrong, {refused} refused").into());
+        }
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    battery(5000)
+}
+
+#[test]
+fn damage_is_noticed() -> Result<(), Box<dyn Error>> {
+    battery(150)
+}
