@@ -5,7 +5,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use stickslip_model::exact::ExactError;
 use stickslip_model::spheres::EncounterError;
-use stickslip_model::{CollisionError, InvalidValue};
+use stickslip_model::{CollisionError, CollisionFailure, InvalidValue};
 use stickslip_plane::atlas::AtlasError;
 
 create_exception!(
