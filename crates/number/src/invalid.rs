@@ -40,9 +40,9 @@ pub enum GivenValue {
     /// The ends of an interval, shown as `1.0:2.0`.
     Interval([f64; 2]),
     /// A text, shown in quotes.
-    Text(String),
+    Text(Box<str>),
     /// What is wrong, in words that go on behind the name.
-    Phrase(String),
+    Phrase(Box<str>),
 }
 
 impl InvalidValue {
@@ -120,6 +120,6 @@ impl From<[f64; 2]> for GivenValue {
 
 impl From<&str> for GivenValue {
     fn from(value: &str) -> Self {
-        Self::Text(value.to_owned())
+        Self::Text(value.into())
     }
 }

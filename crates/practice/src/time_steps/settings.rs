@@ -53,11 +53,11 @@ impl Settings {
     pub fn validate(&self) -> Result<(), InvalidValue> {
         let (impacts, phases) = (self.contacts.len(), self.phases);
         if impacts == 0 {
-            return Err(invalid("contacts:", "0 impacts".to_owned(), "at least one".to_owned()));
+            return Err(invalid("contacts:", "0 impacts", "at least one".to_owned()));
         }
         let steps = &self.steps_per_contact;
         if steps.is_empty() {
-            return Err(invalid("steps:", "0 time steps".to_owned(), "at least one".to_owned()));
+            return Err(invalid("steps:", "0 time steps", "at least one".to_owned()));
         }
         let range = Self::FEWEST_STEPS..=Self::MOST_STEPS;
         if let Some(&value) = steps.iter().find(|steps| !range.contains(steps)) {
@@ -72,7 +72,7 @@ impl Settings {
         if impacts.saturating_mul(phases) > Self::MOST_CONTACTS {
             let most = Self::MOST_CONTACTS;
             let given = format!("= {phases} with {impacts} impacts make too many contacts");
-            return Err(invalid("phases", given, format!("a product of at most {most}")));
+            return Err(invalid("phases", &given, format!("a product of at most {most}")));
         }
         let Reduction { mu, alpha } = self.reduction;
         let accepted = quantity::FRICTION.check(mu).is_ok();
@@ -83,6 +83,6 @@ impl Settings {
 }
 
 /// The error of `name`, with the words that say what is wrong.
-fn invalid(name: &'static str, phrase: String, expected: String) -> InvalidValue {
-    InvalidValue::new(name, GivenValue::Phrase(phrase), expected)
+fn invalid(name: &'static str, phrase: &str, expected: String) -> InvalidValue {
+    InvalidValue::new(name, GivenValue::Phrase(phrase.into()), expected)
 }

@@ -33,7 +33,7 @@ impl Settings {
     /// [`StudyError::Settings`]: there is no collision, or one is too stiff; [`StudyError::Law`].
     pub fn validate(&self) -> Result<(), StudyError> {
         if self.contacts.is_empty() {
-            let none = GivenValue::Phrase("0 collisions".to_owned());
+            let none = GivenValue::Phrase("0 collisions".into());
             return Err(InvalidValue::new("a study of", none, "at least one").into());
         }
         for contact in &self.contacts {

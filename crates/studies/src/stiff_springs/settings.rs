@@ -35,7 +35,7 @@ impl Settings {
         }
         let count = self.psi.len();
         if !(1..=MOST_PSI).contains(&count) {
-            let given = GivenValue::Phrase(format!("has {count} values"));
+            let given = GivenValue::Phrase(format!("has {count} values").into());
             return Err(InvalidValue::new("psi", given, format!("1 to {MOST_PSI}")));
         }
         for (index, &psi) in self.psi.iter().enumerate() {
@@ -47,7 +47,7 @@ impl Settings {
             } else {
                 continue;
             };
-            return Err(InvalidValue::new("psi", GivenValue::Phrase(phrase), expected));
+            return Err(InvalidValue::new("psi", GivenValue::Phrase(phrase.into()), expected));
         }
         Ok(())
     }
