@@ -243,10 +243,10 @@ impl Engine {
     /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
     ///
     /// # Errors
-    /// [`CollisionError::Collision`]: the contact is out of the integrator's range, or the
+    /// [`CollisionError`]: the contact is out of the integrator's range, or the
     /// integration fails.
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
-        let history = match *self {
+        match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {
                 Collider::with_tolerances(Dop853, rtol, atol).history(contact)
             }
@@ -254,7 +254,6 @@ impl Engine {
                 Collider::with_tolerances(Dopri5, rtol, atol).history(contact)
             }
             Self::Exact | Self::Auto => Collider::default().history(contact),
-        };
-        Ok(history?)
+        }
     }
 }
