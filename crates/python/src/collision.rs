@@ -94,9 +94,8 @@ impl Collision {
     /// its value and its derivatives with respect to κ, ψ and damping.
     fn sensitivity(&self, py: Python<'_>) -> PyResult<Vec<[f64; 4]>> {
         let contact = self.result.contact;
-        let found = py
-            .detach(|| Collider::default().sensitivity(contact))
-            .map_err(|error| Failure::Engine(error.into()))?;
+        let found =
+            py.detach(|| Collider::default().sensitivity(contact)).map_err(Failure::Engine)?;
         let rows = [found.eps_n, found.eps_t, found.final_velocity, found.contact_time];
         Ok(rows.iter().chain(&found.switch_times).map(derivatives).collect())
     }

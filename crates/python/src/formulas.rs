@@ -240,13 +240,11 @@ impl FormulaSystem {
 
     /// The system ready for parameters. It is compiled once.
     pub fn compiled(&self) -> PyResult<&Compiled> {
-        match self.compiled.get() {
-            Some(compiled) => Ok(compiled),
-            None => {
-                let compiled = self.system.compile().map_err(bad_input)?;
-                Ok(self.compiled.get_or_init(|| compiled))
-            }
+        if let Some(compiled) = self.compiled.get() {
+            return Ok(compiled);
         }
+        let compiled = self.system.compile().map_err(bad_input)?;
+        Ok(self.compiled.get_or_init(|| compiled))
     }
 
     /// The system with its parameters and its start, and the end of its run.

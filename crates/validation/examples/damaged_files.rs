@@ -50,12 +50,12 @@ fn document(path: &Path) -> Result<String, String> {
 fn part(path: &Path) -> Result<String, String> {
     let parts = Parts::open(&[path.to_owned()], &program(path)).map_err(|e| e.to_string())?;
     parts.check(|_| ()).map_err(|error| error.to_string())?;
-    let mut all = String::new();
+    let mut all = Vec::new();
     let read = parts.each(|points, tile| {
-        all += &format!("{points:?} {tile:?}");
+        all.push(format!("{points:?} {tile:?}"));
         Ok(())
     });
-    read.map(|()| all).map_err(|error| error.to_string())
+    read.map(|()| all.concat()).map_err(|error| error.to_string())
 }
 
 fn shown<T: Debug, E: ToString>(read: Result<T, E>) -> Result<String, String> {

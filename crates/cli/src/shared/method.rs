@@ -55,7 +55,7 @@ impl MethodArguments {
                     "--{name} {value:?} has no effect with --method exact, which has no \
                      tolerances; expected with dop853 and dopri5 only"
                 ),
-                invalid => invalid.to_string(),
+                InvalidChoice::Value(invalid) => invalid.to_string(),
             })
         })
     }

@@ -98,6 +98,7 @@ fn headline(verified: &Atlas) -> String {
 }
 
 /// What is in an atlas and how it was verified, in sentences.
+#[must_use]
 pub fn summary(verified: &Atlas) -> String {
     let (map, report) = (&verified.regions, &verified.report);
     let agree = if report.agrees { "all agree with them" } else { "not all agree with them" };

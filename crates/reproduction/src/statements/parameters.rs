@@ -88,10 +88,8 @@ fn scaled_back(draw: &mut Rng, kappa: f64, psi: f64) -> Result<(f64, f64), Repro
 /// ε_t of a collision in three parameters, which must end with the contact.
 fn ended(system: &ThreeParameters, psi: f64) -> Result<f64, ReproductionError> {
     let kappa = system.kappa;
-    let found = system.eps_t(psi).map_err(|source| {
-        let source = source.into();
-        CollisionFailure { kappa, psi, damping: 0.0, source }
-    })?;
+    let found = system.eps_t(psi);
+    let found = found.map_err(|source| CollisionFailure { kappa, psi, damping: 0.0, source })?;
     match found {
         (eps_t, Outcome::EndedByGuard { guard: END }) => Ok(eps_t),
         (_, outcome) => Err(ReproductionError::Unended { kappa, psi, outcome }),
