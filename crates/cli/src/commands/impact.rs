@@ -66,6 +66,7 @@ pub struct ImpactArguments {
     /// JSON file of the bodies of a batch, of which columns change what they name; - for standard
     /// input
     #[arg(long, value_name = "FILE.json", help_heading = "Batch", requires = "batch")]
+    #[arg(conflicts_with = "file")]
     pub bodies: Option<PathBuf>,
 
     /// A file of impacts.

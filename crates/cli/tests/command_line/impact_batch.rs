@@ -304,7 +304,7 @@ fn options_that_do_not_fit() {
         ("impact --batch in.csv --out out.csv", ["--bodies", "JSON file"]),
         ("impact bodies.json --out o", ["--out", "--batch"]),
         ("impact bodies.json --batch in.csv --out o", ["FILE.json", "--batch"]),
-        ("impact bodies.json --bodies bodies.json", ["--batch", "required"]),
+        ("impact bodies.json --bodies bodies.json", ["FILE.json", "--bodies"]),
         (&format!("{BATCH} --course c.csv"), ["--course", "--batch"]),
         (&format!("{BATCH} --format json"), ["--format", "--batch"]),
         ("impact --batch in.csv --bodies bodies.json --out in.csv", ["same file", "--batch"]),

@@ -74,8 +74,8 @@ impl fmt::Display for ParameterPlace {
 }
 
 impl Atlas {
-    /// Looks up a collision by its two parameters: κ and ψ, or the velocities. Within the error of a
-    /// boundary, the collision itself decides, computed by the best engine for it.
+    /// Looks up a collision by its two parameters: κ and ψ, or the velocities. Within the error of
+    /// a boundary, the collision itself decides, computed by the best engine for it.
     #[must_use]
     pub fn locate(&self, parameters: [f64; 2]) -> Located {
         let [x, y] = parameters;

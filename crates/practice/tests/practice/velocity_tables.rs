@@ -225,11 +225,11 @@ fn what_cannot_be_is_refused_with_numbers() {
         tables::run(&settings, progress::SILENT).expect_err("no table")
     };
     for (normal, tangential, name) in [
-        ((0.0, 8.0), (0.3, 12.0), "normal_m_per_s = 0.0"),
-        ((8.0, 1.0), (0.3, 12.0), "normal_m_per_s = 8.0"),
-        ((1.0, f64::NAN), (0.3, 12.0), "normal_m_per_s = 1.0"),
-        ((1.0, 8.0), (-0.3, 12.0), "tangential_m_per_s = -0.3"),
-        ((1.0, 8.0), (0.3, f64::INFINITY), "tangential_m_per_s = 0.3"),
+        ((0.0, 8.0), (0.3, 12.0), "normal_m_per_s 0.0:8.0"),
+        ((8.0, 1.0), (0.3, 12.0), "normal_m_per_s 8.0:1.0"),
+        ((1.0, f64::NAN), (0.3, 12.0), "normal_m_per_s 1.0:NaN"),
+        ((1.0, 8.0), (-0.3, 12.0), "tangential_m_per_s -0.3:12.0"),
+        ((1.0, 8.0), (0.3, f64::INFINITY), "tangential_m_per_s 0.3:inf"),
         ((1.0, 1.0 + 1e-9), (0.3, 12.0), "ln(normal_m_per_s)"),
         ((1e-50, 8.0), (0.3, 12.0), "expected 1e-20 to 1e10"),
         ((1e300, 1e307), (1e300, 1e307), "expected"),
