@@ -5,9 +5,6 @@
 //! have a margin that vanishes there: such twins do not touch. And the value and the slope of a
 //! margin do not show where it vanishes if its slope changes within the shortest differences.
 
-use nalgebra::Vector1;
-
-use crate::conditions::{Limits, Unsolved, secant, solve};
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
@@ -129,12 +126,20 @@ fn dip<F: Family>(
     }))
 }
 
+/// A place of a branch, with what the search for the lowest value of another margin needs.
+struct Probe {
+    point: Point,
+    /// The sine of the angle between the gradients of the two margins.
+    sine: f64,
+    /// The value of the other margin.
+    value: f64,
+    /// The length of its gradient.
+    slope: f64,
+}
+
 /// A boundary that is more than this many step lengths away does not touch the branch within the
 /// step.
 const FAR: f64 = 10.0;
-
-/// A slope that counts as none.
-const FLAT: f64 = 1e-100;
 
 /// After this many updates the angle between boundaries that touch is at most half of the first
 /// angle.
@@ -153,22 +158,15 @@ fn parallel<F: Family>(
     start: [f64; 2],
     limits: [f64; 2],
 ) -> Traced<Option<(f64, Probe)>, F> {
-    let (runs, tangent) = (track.runs, &near.node.tangent);
+    let runs = track.runs;
     let width = limits[1] - limits[0];
-    let reach = 0.3 * width + 100.0 * runs.options.tolerance;
-    let search = Limits {
-        retreat: runs.lengths.solved,
-        ..Limits::new(f64::INFINITY, 10.0 * runs.options.tolerance)
-    };
-    let (mut before, mut first, mut probes) = (None, 0.0, 0);
-    let mut last: Option<(f64, Probe)> = None;
-    let found: Traced<_, F> = solve(&Vector1::new(start[0]), &search, |at, _| {
-        at.x = at.x.clamp(limits[0], limits[1]);
-        let guess = place(at.x);
+    let probe = |length: f64| -> Traced<Option<Probe>, F> {
+        let reach = 0.3 * width + 100.0 * runs.options.tolerance;
+        let guess = place(length);
         let Some(found) = correct(runs, &track.margin, &guess, &near.gradient, reach)? else {
             return Ok(None);
         };
-        let point = found.point;
+        let (point, tangent) = (found.point, &near.node.tangent);
         let (Some(own), Some(other), Some(value)) = (
             runs.gradient(&point, &track.margin, tangent, track.radius)?,
             runs.gradient(&point, margin, tangent, track.radius)?,
@@ -176,35 +174,40 @@ fn parallel<F: Family>(
         ) else {
             return Ok(None);
         };
-        let (sine, slope) = (own.perp(&other) / (own.norm() * other.norm()), other.norm());
-        last = Some((at.x, Probe { point, value, slope }));
-        if probes == 0 {
-            first = sine;
+        let sine = own.perp(&other) / (own.norm() * other.norm());
+        Ok(Some(Probe { point, sine, value, slope: other.norm() }))
+    };
+    let mut length = start[0];
+    let Some(mut last) = probe(length)? else { return Ok(None) };
+    if last.value.abs() > FAR * width * last.slope {
+        return Ok(None);
+    }
+    let (mut shift, first) = (start[1] - start[0], last.sine.abs());
+    let mut updates = 0;
+    for _ in 0..40 {
+        if updates >= UPDATES && last.sine.abs() > 0.5 * first {
+            return Ok(None);
         }
-        let hopeless = if probes == 0 {
-            value.abs() > FAR * width * slope
-        } else {
-            probes >= UPDATES && sine.abs() > 0.5 * first.abs()
+        let Some(now) = probe(length + shift)? else {
+            shift *= 0.5;
+            if shift.abs() <= runs.lengths.solved {
+                return Ok(Some((length, last)));
+            }
+            continue;
         };
-        probes += 1;
-        // The first update leads to the second place.
-        let to_second = if sine == 0.0 { 1.0 } else { sine / (start[0] - start[1]) };
-        let turn = secant(&mut before, at.x, sine).unwrap_or(to_second);
-        // Where the angle does not change, the update leads as far as it may.
-        let turn = if turn == 0.0 { FLAT.copysign(turn) } else { turn };
-        Ok(Some((Vector1::new(sine), (!hopeless).then(|| Vector1::new(turn)))))
-    });
-    let exists = matches!(found?, Ok(_) | Err(Unsolved::Ceases { .. }));
-    Ok(last.filter(|_| exists))
-}
-
-/// A place of a branch where another margin has a value.
-struct Probe {
-    point: Point,
-    /// The value of the other margin.
-    value: f64,
-    /// The length of its gradient.
-    slope: f64,
+        length += shift;
+        updates += 1;
+        let turn = (now.sine - last.sine) / shift;
+        last = now;
+        shift = (length - last.sine / turn).clamp(limits[0], limits[1]) - length;
+        if shift == 0.0 && (length == limits[0] || length == limits[1]) || shift.is_nan() {
+            return Ok(None);
+        }
+        if shift.abs() <= 10.0 * runs.options.tolerance {
+            return Ok(Some((length, last)));
+        }
+    }
+    Ok(None)
 }
 
 /// Whether another margin is so close to zero beside the step that its boundary may touch the
