@@ -115,9 +115,10 @@ def _of_atlas(atlas: Atlas) -> str:
     window = atlas.window
     sides = [window["kappa"], window.get("ratio", window["psi"])]
     x, y = ({"low": low, "high": high, "log": low > 0} for low, high in sides)
-    reduced = {"axes": "kappa-ratio", "mu": window["mu"], "alpha": window["alpha"]}
-    middle = [(low + high) / 2 for low, high in sides]
-    return _view(x=x, y=y, point=middle, **_scene(window), **(reduced if "ratio" in window else {}))
+    fields = {"x": x, "y": y, "point": [(low + high) / 2 for low, high in sides]}
+    if "ratio" in window:
+        fields |= {"axes": "kappa-ratio", "mu": window["mu"], "alpha": window["alpha"]}
+    return _view(**fields, **_scene(window))
 
 
 def _scene(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -129,6 +129,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "FamilyChange": lambda: of("FamilyStack").changes[0],
     "FamilyLayer": lambda: of("FamilyStack").layers[0],
     "FamilyVertex": lambda: of("FamilyAtlas").vertices[0],
+    "Explorer": lambda: stickslip.explore(),
     "Fit": _fit,
     "Followed": lambda: family().follow(
         *WINDOW, [(0.6, 0.55), (1.9, 0.75)], [lambda p, q: q - 0.65]

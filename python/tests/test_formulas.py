@@ -41,7 +41,7 @@ def test_starts_and_parameters_are_replaced() -> None:
     np.testing.assert_allclose(found.y[:, -1], [0.75, -1.0], atol=1e-12)
     with pytest.raises(ValueError, match="'h' is no parameter; expected one of g, e"):
         ball.solve(parameters={"h": 1.0})
-    with pytest.raises(ValueError, match="number of components is 1"):
+    with pytest.raises(ValueError, match="number of components = 1"):
         ball.solve(y0=[1.0])
     with pytest.raises(ValueError, match="expected an end after"):
         ball.solve((1.0, 0.0))

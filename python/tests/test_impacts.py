@@ -134,7 +134,8 @@ def test_normal_impacts() -> None:
     assert np.isnan(found.eps_t).tolist() == [True, False]
     assert found.eps_n[0] == found.eps_n[1]
     assert found.tangential_after_m_per_s[0] == 0.0 and found.collisions.psi[0] == 0.0
-    assert found.velocity_m_per_s[0, 0].tolist() == [0.0, 0.0, found.normal_after_m_per_s[0]]
+    expected = [0.0, 0.0, found.normal_after_m_per_s[0]]
+    assert found.velocity_m_per_s[0, 0] == pytest.approx(expected, rel=1e-15, abs=0.0)
     at_angle = impact(bodies, speed_m_per_s=1.0, angle_rad=[0.0])
     assert at_angle.eps_n[0] == found.eps_n[0] and at_angle.centre_rebound_angle_rad[0] == 0.0
 

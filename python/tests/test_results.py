@@ -90,9 +90,11 @@ def test_the_motions_of_a_file_are_pickled() -> None:
 
 
 def test_compiled_functions_are_copied() -> None:
-    from ctypes import CFUNCTYPE
+    from ctypes import CFUNCTYPE, POINTER, c_double
 
-    one = stickslip.Compiled(CFUNCTYPE(None)(lambda: None), [1.0, 2.0])
+    array = POINTER(c_double)
+    function = CFUNCTYPE(None, c_double, array, array, array)(lambda *_: None)
+    one = stickslip.Compiled(function, [1.0, 2.0])
     one.direction = 1.0
     other = copy.deepcopy([one])[0]
     other.direction = -1.0

@@ -60,7 +60,11 @@ pub fn to_string(document: &impl Serialize) -> serde_json::Result<String> {
 /// [`Damaged`] names the first field that does not fit.
 pub fn check(text: &[u8]) -> Result<(), Damaged> {
     let Ok(mut fields) = serde_json::from_slice::<Map<String, Value>>(text) else { return Ok(()) };
-    let Some(digests) = fields.remove(DIGESTS) else { return Ok(()) };
+    let Some(digests) = fields.remove(DIGESTS) else {
+        // Digests under another name: it is their name that was changed.
+        let renamed = fields.into_iter().find(|(_, value)| has_digests(value));
+        return renamed.map_or(Ok(()), |(field, _)| Err(Damaged { field }));
+    };
     let (written, found) = (serde_json::from_value(digests), digests_of(&fields));
     let written: BTreeMap<String, String> =
         written.map_err(|_| Damaged { field: DIGESTS.to_owned() })?;
@@ -69,6 +73,12 @@ pub fn check(text: &[u8]) -> Result<(), Damaged> {
         Some(field) => Err(Damaged { field: field.clone() }),
         None => Ok(()),
     }
+}
+
+/// Whether a value is an object with a digest.
+fn has_digests(value: &Value) -> bool {
+    let is_digest = |text: &str| text.len() == 32 && text.bytes().all(|it| it.is_ascii_hexdigit());
+    value.as_object().is_some_and(|it| it.values().filter_map(Value::as_str).any(is_digest))
 }
 
 fn digests_of(fields: &Map<String, Value>) -> BTreeMap<String, String> {
