@@ -272,8 +272,7 @@ fn a_sealed_document_that_has_changed_is_noticed_wherever_it_has() {
         bytes[place] = if bytes[place] == b'7' { b'4' } else { b'7' };
         let Ok(changed) = serde_json::from_slice::<serde_json::Value>(&bytes) else { continue };
         documents += 1;
-        let same = changed == value || changed.get("digests").is_none();
-        assert_eq!(sealed::check(&bytes).is_ok(), same, "at byte {place}");
+        assert_eq!(sealed::check(&bytes).is_ok(), changed == value, "at byte {place}");
     }
     assert!(documents > 100, "{documents} documents");
     let mut more = value.clone();
