@@ -2,7 +2,7 @@
 
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Group, Node, Options, Rect, TextChunk, Tree};
-use roxmltree::{Document, Node};
+use roxmltree::Document;
 use stickslip_figure::Svg;
 
 const FONT: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
@@ -39,7 +39,7 @@ pub fn hints(svg: &Svg) -> Vec<String> {
     let areas = document.descendants().filter(|node| node.has_tag_name("path"));
     areas
         .flat_map(|area| area.descendants())
-        .filter(Node::is_text)
+        .filter(roxmltree::Node::is_text)
         .filter_map(|node| node.text())
         .map(Into::into)
         .collect()
