@@ -6,8 +6,8 @@
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
 //! `tables`, `studies` (results), `hybrid`, `formulas`, `many`, `tape` (systems of one's own),
-//! `families` (and what they depend on), `style` (colours), `engines`, `parallel` and `failure` (what
-//! they share).
+//! `families` (and what they depend on), `style` (colours), `engines`, `parallel` and `failure`
+//! (what they share).
 
 mod arrays;
 mod background;

@@ -31,7 +31,7 @@ pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
 /// one pixel for each pixel of the SVG.
 ///
 /// # Errors
-/// As [`png`], also without a picture or if GIF does not allow the size. [`FigureError::Gif`]: a
+/// As [`png()`], also without a picture or if GIF does not allow the size. [`FigureError::Gif`]: a
 /// picture is larger than the first one.
 pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureError> {
     /// How hard 256 colours are looked for, from 1, the best, to 30.
