@@ -5,8 +5,8 @@
 //! state, away from zeros of conditions, however unstable the orbit is. The rules that act must be
 //! those of the itinerary, at their times, and lead to its modes.
 
-use stickslip_expression::{Compiled, Next, Recording, Rule, System};
-use stickslip_solver::dynamic::DynamicSwitch;
+use stickslip_expression::{Compiled, InvalidValue, Next, Recording, Rule, System};
+use stickslip_solver::dynamic::{DynamicSwitch, ReadableDynamic};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
 use crate::equations::{Draft, Equations};
@@ -18,12 +18,48 @@ const AWAY: f64 = 1e-6;
 /// Segments shorter than this part of the period are passed by the run of a longer one.
 const SHORT: f64 = 1e-5;
 
+/// A system whose modes may also be entered halfway: behind its own modes are copies in which no
+/// condition starts from a zero, as conditions of the modes themselves may.
+#[derive(Clone, Debug)]
+pub(crate) struct Halfway {
+    system: System,
+    compiled: Compiled,
+    /// The number of modes of the system itself.
+    modes: usize,
+}
+
+impl Halfway {
+    pub fn new(system: &System, compiled: &Compiled) -> Result<Self, InvalidValue> {
+        let (mut system, modes) = (system.clone(), system.modes.len());
+        // Zeros are found from the ways into a mode, and copies are further ways.
+        let runnable = compiled.with(&system.values())?;
+        let own = system.modes.clone();
+        for (place, mode) in system.modes.iter_mut().enumerate() {
+            let guards = ReadableDynamic::guards(&runnable, place);
+            for (rule, guard) in mode.rules.iter_mut().zip(guards) {
+                rule.from_zero = guard.zero_order();
+            }
+        }
+        for (place, mut mode) in own.into_iter().enumerate() {
+            for rule in &mut mode.rules {
+                rule.from_zero = 0;
+                if rule.next == Next::Stay && !is_note(rule) {
+                    rule.next = Next::Mode(place);
+                }
+            }
+            system.modes.push(mode);
+        }
+        let compiled = system.compile()?;
+        Ok(Self { system, compiled, modes })
+    }
+}
+
 /// Whether the system follows the orbit at a solution of its equations.
 ///
 /// # Errors
 /// The parameters cannot be used.
 pub(crate) fn verdict(
-    (system, compiled): (&System, &Compiled),
+    Halfway { system, compiled, modes }: &Halfway,
     equations: &Equations,
     draft: &Draft,
     options: &Options,
@@ -45,11 +81,11 @@ pub(crate) fn verdict(
         let middle = |segment: usize| time(segment) + 0.5 * draft.durations[segment % m];
         let state = equations.within(draft, from, 0.5 * draft.durations[from])?;
         let leg = draft.legs[from];
-        let own = runnable.clone().starting(Some(leg.mode), Some(middle(from)), Some(&state))?;
+        let own = runnable.clone().starting(Some(leg.mode + modes), Some(middle(from)), Some(&state))?;
         let expected: Vec<(usize, f64)> =
             (from..to).map(|i| (i % m, time(i) + draft.durations[i % m])).collect();
         let obstacle = |events: &[DynamicSwitch<usize>]| {
-            obstacle(system, draft, &expected, events).map(Verdict::Virtual)
+            obstacle((system, *modes), draft, &expected, events).map(Verdict::Virtual)
         };
         let found = match own.record(EmbeddedPair::Dop853, middle(to), options) {
             Ok(found) => found,
@@ -72,7 +108,7 @@ pub(crate) fn verdict(
 
 /// Where a run does not do what is expected: events of segments at times.
 fn obstacle(
-    system: &System,
+    (system, modes): (&System, usize),
     draft: &Draft,
     expected: &[(usize, f64)],
     events: &[DynamicSwitch<usize>],
@@ -83,7 +119,7 @@ fn obstacle(
         let next = expected.peek().copied();
         if let Some((segment, s)) = next {
             let leg = draft.legs[segment];
-            let is_own = event.from == leg.mode && event.guard == leg.rule;
+            let is_own = event.from % modes == leg.mode && event.guard == leg.rule;
             if is_own && (event.s - s).abs() <= away {
                 expected.next();
                 if event.to != leg.next {

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 use stickslip_expression::{
     Formula, Graph, Inputs, InvalidValue, Program, System, Trigger, Variable,
 };
-use stickslip_solver::Options;
+use stickslip_solver::{GivenValue, Options};
 
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, require_short};
@@ -422,7 +422,7 @@ fn clock(
         let explicit = legs.iter().any(|leg| reads_time(system, *leg));
         let expected = "a rule `every …` among the itinerary, whose period is that of what depends \
                         on the time";
-        let found = "none that repeats the time";
+        let found = GivenValue::Phrase("has no clock, and equations depend on the time".into());
         return match explicit {
             true => Err(InvalidValue::new("itinerary", found, expected).into()),
             false => Ok(None),

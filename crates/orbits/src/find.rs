@@ -3,12 +3,12 @@
 use stickslip_expression::{
     Compiled, InvalidValue, Next, Rule, Runnable, System, Trigger,
 };
-use stickslip_solver::{EmbeddedPair, Options, Outcome};
+use stickslip_solver::{EmbeddedPair, GivenValue, Options, Outcome};
 
-use crate::admissible::verdict;
+use crate::admissible::{Halfway, verdict};
 use crate::equations::{Draft, Equations, Evaluation, clock_values};
 use crate::error::OrbitError;
-use crate::itinerary::{Leg, modes_after, require_short, rule_named};
+use crate::itinerary::{Leg, modes_after, require_short, rules_named};
 use crate::multipliers::multipliers;
 use crate::newton::correct;
 use crate::orbit::{Orbit, Segment};
@@ -27,6 +27,8 @@ const REPEATS: f64 = 1e-4;
 pub struct Orbits {
     pub(crate) system: System,
     pub(crate) compiled: Compiled,
+    /// What decides whether the system follows an orbit.
+    halfway: Halfway,
     /// The accuracy of flows and runs.
     pub(crate) options: Options,
 }
@@ -56,9 +58,11 @@ impl Orbits {
         let compiled = system.compile()?;
         let expected = "modes, or `sliding on`, in place of `if`, `sign` and `floor` in equations";
         let accepted = !system.branches();
-        InvalidValue::check("the system", "equations that jump within a mode", expected, accepted)?;
+        let found = GivenValue::Phrase("has equations that jump within a mode".into());
+        InvalidValue::check("the system", found, expected, accepted)?;
         let options = Options { max_steps: 1_000_000, ..Options::with_tolerance(1e-13) };
-        Ok(Self { system: system.clone(), compiled, options })
+        let halfway = Halfway::new(system, &compiled)?;
+        Ok(Self { system: system.clone(), compiled, halfway, options })
     }
 
     /// The system.
@@ -156,10 +160,15 @@ impl Orbits {
         };
         let (mut mode, mut s, mut state) = (start.mode, start.s, start.state.to_vec());
         for (segment, name) in guess.itinerary.iter().enumerate() {
-            let rule = rule_named(&self.system, mode, name)?;
             let until = guess.durations.map(|durations| s + durations[segment]);
-            let (end, before) =
-                self.first(parameters, segment, (mode, rule), (s, &state), until)?;
+            let own = rules_named(&self.system, mode, name)?.into_iter().map(|rule| {
+                let first = self.first(parameters, segment, (mode, rule), (s, &state), until);
+                first.map(|(end, before)| (rule, end, before))
+            });
+            // Of rules with one name, that which acts first.
+            let (rule, end, before) = own.reduce(earlier).unwrap_or_else(|| {
+                Err(OrbitError::NoEvent { segment, rule: (*name).to_owned(), steps: 0 })
+            })?;
             // The event itself, by the system: its transition alone.
             let leg = Leg { mode, rule, next: mode };
             let event = Equations::event(&self.system, leg, parameters, (end, &before));
@@ -174,8 +183,8 @@ impl Orbits {
         if mode != first {
             let [found, expected] = [mode, first].map(|mode| self.system.modes[mode].name.clone());
             let expected = format!("one that ends in mode {expected}, where it starts");
-            let found = format!("one that ends in mode {found}");
-            return Err(InvalidValue::new("itinerary", found.as_str(), expected).into());
+            let found = GivenValue::Phrase(format!("ends in mode {found}").into());
+            return Err(InvalidValue::new("itinerary", found, expected).into());
         }
         Ok(draft)
     }
@@ -238,8 +247,9 @@ impl Orbits {
         let ends = &evaluation.ends;
         if !equations.repeats(draft, ends) {
             let expected = "a clock whose period is that of what depends on the time";
-            let found = format!("equations that differ after {:?}", draft.period());
-            return Err(InvalidValue::new("itinerary", found.as_str(), expected).into());
+            let found = format!("repeats after {:?}, and equations do not", draft.period());
+            let found = GivenValue::Phrase(found.into());
+            return Err(InvalidValue::new("itinerary", found, expected).into());
         }
         let monodromy = equations.monodromy(ends);
         let segments = draft.legs.iter().enumerate().map(|(i, &leg)| Segment {
@@ -255,9 +265,21 @@ impl Orbits {
             segments: segments.collect(),
             period: draft.period(),
             multipliers: monodromy.and_then(|(it, trivial)| multipliers(&it, trivial.as_ref())),
-            verdict: verdict((&self.system, &self.compiled), equations, draft, &self.options)?,
+            verdict: verdict(&self.halfway, equations, draft, &self.options)?,
             error,
         })
+    }
+}
+
+/// A rule, with when and in which state it acts.
+type Acted = Result<(usize, f64, Vec<f64>), OrbitError>;
+
+/// Which of two rules acts earlier.
+fn earlier(one: Acted, other: Acted) -> Acted {
+    match (&one, &other) {
+        (Ok((_, s, _)), Ok((_, other_s, _))) if other_s < s => other,
+        (Err(_), Ok(_)) => other,
+        _ => one,
     }
 }
 

@@ -28,28 +28,32 @@ impl Leg {
     }
 }
 
-/// The place of the rule of this name in a mode.
+/// The places of the rules of this name in a mode, at least one.
 ///
 /// # Errors
 /// There is none, or a segment cannot end with it.
-pub(crate) fn rule_named(system: &System, mode: usize, name: &str) -> Result<usize, InvalidValue> {
+pub(crate) fn rules_named(
+    system: &System,
+    mode: usize,
+    name: &str,
+) -> Result<Vec<usize>, InvalidValue> {
     let rules = &system.modes[mode].rules;
-    let named = rules.iter().enumerate().find(|(place, rule)| rule.name(*place) == name);
-    let Some((place, rule)) = named else {
+    let named = (0..rules.len()).filter(|&place| rules[place].name(place) == name);
+    let named: Vec<usize> = named.collect();
+    if named.is_empty() {
         let known: Vec<_> = rules.iter().enumerate().map(|(place, it)| it.name(place)).collect();
         let known = if known.is_empty() { "no rule".to_owned() } else { known.join(", ") };
         let expected = format!("a rule of mode {}, which has {known}", system.modes[mode].name);
         return Err(InvalidValue::new("itinerary", name, expected));
-    };
-    let refused = match rule.trigger {
-        Trigger::At(_) => Some("a rule that acts again and again, not at given times"),
-        _ if rule.ends_after > 0 => Some("a rule that never ends a run"),
-        _ => None,
-    };
-    match refused {
-        Some(expected) => Err(InvalidValue::new("itinerary", name, expected)),
-        None => Ok(place),
     }
+    for &place in &named {
+        let at_times = matches!(rules[place].trigger, Trigger::At(_));
+        let expected = "a rule that acts again and again, not at given times";
+        InvalidValue::check("itinerary", name, expected, !at_times)?;
+        let expected = "a rule that never ends a run";
+        InvalidValue::check("itinerary", name, expected, rules[place].ends_after == 0)?;
+    }
+    Ok(named)
 }
 
 /// The modes that may follow a rule of a mode: where its condition is ≥ 0, and where it is not.

@@ -2,6 +2,8 @@
 
 mod admissible;
 mod branch;
+#[cfg(feature = "serde")]
+pub mod document;
 mod equations;
 mod error;
 mod find;

@@ -59,7 +59,9 @@ fn the_grazing_curve_of_impacts() {
         let graze = closed.d * closed.impedance();
         let closed = Closed { a: 1.02 * graze, ..closed };
         let speeds = closed.speeds();
-        let v = speeds.iter().copied().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+        // Where the branch folds first, the orbit is beside the graze on its virtual side.
+        let v = speeds.into_iter().min_by(|one, other| one.abs().total_cmp(&other.abs()));
+        let v = v.expect("beyond the graze");
         let Ok(orbit) = impact::near(&orbits, &closed, v, 1e-6) else { panic!("{w}") };
         let range = [0.9 * graze, 1.1 * graze];
         let branch = orbits.branch(&orbit, 3, range, &BranchOptions::default()).expect("a branch");

@@ -14,17 +14,17 @@ ramp = 3.8 + 4.4*tau/period
 control = 8.4*(v - 11.3)
 v' = (i - v/r)/c
 tau' = 1
-mode off
+mode blocked
   i' = -v/l
-  when control < ramp \"on\" -> on
+  when control < ramp \"on\" -> conducts
   when tau > period \"skip\"
     tau := 0
-mode on
+mode conducts
   i' = (source - v)/l
-  when tau > period \"clock\" -> off
+  when tau > period \"clock\" -> blocked
     tau := 0
-  when control > ramp \"early\" -> off
-start in off
+  when control > ramp \"early\" -> blocked
+start in blocked
 end = 1
 ";
 

@@ -19,8 +19,9 @@ fn message(text: &str, itinerary: &[&str]) -> String {
 fn errors_say_what_and_where() {
     let decay = "state x = 1\nx' = -x\nwhen x falls through 0.5 \"half\"\nend = 1";
     assert!(message(decay, &["haf"]).contains("itinerary = \"haf\"; expected a rule of mode main, which has half"));
-    // From 0.5 it never falls through 0.5 again.
-    assert!(message(decay, &["half", "half"]).contains("segment 1: rule `half` does not act"));
+    let never = "state x = 1\nx' = -x\nwhen x > 2 \"high\"\nend = 1";
+    let said = message(never, &["high"]);
+    assert!(said.contains("segment 0: rule `high` does not act within"), "{said}");
     assert!(message(decay, &[]).contains("the number of segments = 0"));
     let many = vec!["half"; 10_000];
     assert!(message(decay, &many).contains("10000 is out of range; expected 1 to 600"));
@@ -32,7 +33,7 @@ fn errors_say_what_and_where() {
     let time = "state x = 1\nx' = -x + cos(t)\nwhen x < 0.2 \"low\"\n  x := x + 1\nend = 1";
     assert!(message(time, &["low"]).contains("expected a rule `every …`"));
     let other = "state x = 1\nx' = -x + cos(t)\nevery 5 from 0 \"tick\"\nend = 1";
-    assert!(message(other, &["tick"]).contains("equations that differ after"), "{}", message(other, &["tick"]));
+    assert!(message(other, &["tick"]).contains("itinerary repeats after 5.0, and equations do not"), "{}", message(other, &["tick"]));
     // The event does not depend on the start.
     let zero = "state x = 0, y = 0\nx' = 0\ny' = 1\nwhen y > 1 \"a\"\n  y := 0\nend = 1";
     assert_eq!(message_of(zero, &["a"]), Ok(1.0));
