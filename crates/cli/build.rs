@@ -8,16 +8,18 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 15] = [
+const SOURCES: [&str; 17] = [
     "src",
     "build.rs",
     "templates",
     "../contact/src",
     "../exact/src",
+    "../expression/src",
     "../figure/assets",
     "../figure/src",
     "../files/src",
     "../model/src",
+    "../orbits/src",
     "../plane/src",
     "../reproduction/src",
     "../studies/src",

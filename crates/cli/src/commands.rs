@@ -3,6 +3,7 @@
 //! is in `shared`.
 
 mod asymptote;
+mod branch;
 mod collide;
 mod completions;
 mod converge;
@@ -14,6 +15,7 @@ mod laws;
 mod locate;
 mod man;
 mod map;
+mod orbit;
 mod reproduce;
 mod run;
 mod stack;
@@ -47,6 +49,8 @@ pub enum Command {
     Join(join::JoinArguments),
     Run(run::RunArguments),
     System(system::SystemArguments),
+    Orbit(orbit::OrbitArguments),
+    Branch(branch::BranchArguments),
     Trace(trace::TraceArguments),
     Stack(stack::StackArguments),
     Locate(locate::LocateArguments),
@@ -75,6 +79,8 @@ impl Command {
             Self::Join(arguments) => join::run(arguments),
             Self::Run(arguments) => run::run(arguments),
             Self::System(arguments) => system::run(arguments),
+            Self::Orbit(arguments) => orbit::run(arguments),
+            Self::Branch(arguments) => branch::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),
             Self::Stack(arguments) => stack::run(arguments),
             Self::Locate(arguments) => locate::run(arguments),

@@ -283,20 +283,24 @@ fn joined(
 
 impl Orbits {
     /// The orbit of twice the period that begins at a flip, beside it by `aside` of the size of its
-    /// states. The parameter of the branch is that at which this orbit exists.
+    /// states, at the value of the parameter where it is so far away.
     ///
     /// # Errors
     /// [`OrbitError`]; no orbit is found if there is no flip nearby.
     pub fn doubled(
         &self,
-        flip: &SpecialOrbit,
+        flip: &Orbit,
         parameter: usize,
         aside: f64,
     ) -> Result<Orbit, OrbitError> {
         let accepted = aside > 0.0 && aside <= 0.5;
         InvalidValue::check("the distance from a flip", aside, "above 0, to 0.5", accepted)?;
-        let one = flip.orbit.draft();
-        let size = flip.value.abs().max(1e-3);
+        let count = self.system.parameters.len();
+        let expected = format!("the place of one of {count} parameters");
+        InvalidValue::check("the parameter", parameter, expected, parameter < count)?;
+        let one = flip.draft();
+        let value = flip.parameters[parameter].abs();
+        let size = if value > 0.0 { value } else { 1.0 };
         let active = [(parameter, size)];
         let single = Equations::new(&self.system, one.clone(), &active, &self.options)?;
         let place = single.place(&one);

@@ -136,6 +136,23 @@ impl Orbits {
         self.solve(Draft { parameters: parameters.to_vec(), ..orbit.draft() })
     }
 
+    /// Times and states along an orbit for a smooth curve, each segment in so many parts.
+    ///
+    /// # Errors
+    /// [`OrbitError`]: a segment cannot be computed.
+    pub fn course(&self, orbit: &Orbit, parts: usize) -> Result<Vec<(f64, Vec<f64>)>, OrbitError> {
+        let draft = orbit.draft();
+        let equations = Equations::new(&self.system, draft.clone(), &[], &self.options)?;
+        let mut course = Vec::with_capacity((parts + 1) * orbit.segments.len());
+        for (i, s) in draft.starts().into_iter().enumerate() {
+            for part in 0..=parts {
+                let duration = draft.durations[i] * part as f64 / parts.max(1) as f64;
+                course.push((s + duration, equations.within(&draft, i, duration)?));
+            }
+        }
+        Ok(course)
+    }
+
     /// The system at the start of a guess.
     fn start(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Runnable, InvalidValue> {
         self.compiled.with(parameters)?.starting(guess.mode, guess.time, guess.state)
