@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from stickslip._explorer import Explorer, explore
     from stickslip._laws import NamedLaw, laws
     from stickslip._native import ComputationError
+    from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
     from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace

@@ -122,8 +122,9 @@ fn obstacle(
             let is_own = event.from % modes == leg.mode && event.guard == leg.rule;
             if is_own && (event.s - s).abs() <= away {
                 expected.next();
-                if event.to != leg.next {
-                    return Some(Obstacle::Branches { segment, to: event.to });
+                let to = event.to % modes;
+                if to != leg.next {
+                    return Some(Obstacle::Branches { segment, to });
                 }
                 continue;
             }

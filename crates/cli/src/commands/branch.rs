@@ -211,7 +211,7 @@ If the branch breaks off within the interval, it is written and says why, and th
 /// What `branch --help` says last.
 const EXAMPLES: &str = "\
 Examples:
-  stickslip branch examples/systems/oscillator.slip --itinerary impact,phase --set w=0.8 \
+  stickslip branch examples/orbits/oscillator.slip --itinerary impact,phase --set w=0.8 \
 --over a=0.05:1.2 --out branch.json --plot branch.svg --show v
   stickslip branch examples/systems/relay.slip --itinerary down,up --over width=0.1:0.9
 

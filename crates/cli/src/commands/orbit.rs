@@ -141,7 +141,7 @@ orbit by itself is decided by bounds along the whole orbit.";
 /// What `orbit --help` says last.
 const EXAMPLES: &str = "\
 Examples:
-  stickslip orbit examples/systems/oscillator.slip --itinerary impact,phase
+  stickslip orbit examples/orbits/oscillator.slip --itinerary impact,phase
   stickslip orbit examples/systems/belt.slip --settle 100 --plot orbit.svg
   stickslip orbit examples/systems/relay.slip --itinerary down,up --out orbit.json
 

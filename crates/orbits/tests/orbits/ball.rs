@@ -6,18 +6,7 @@ use stickslip_expression::System;
 use stickslip_orbits::{Guess, Orbits, Verdict};
 
 /// Time is explicit; a clock says its period.
-pub const TEXT: &str = "
-parameter a = 0.02, w = 2*3.141592653589793, r = 0.7
-state x = 0, v = 1
-table = a*sin(w*t)
-x' = v
-v' = -1
-when x < table \"bounce\"
-  x := table
-  v := (1 + r)*table' - r*v
-every 2*pi/w from 0 \"period\"
-end = 10
-";
+pub const TEXT: &str = include_str!("../../../../examples/orbits/ball.slip");
 
 #[test]
 fn random_parameters_have_the_orbits_of_the_closed_form() {

@@ -6,27 +6,7 @@ use stickslip_orbits::{BranchOptions, Guess, Orbits, SpecialKind};
 
 use crate::branches::values;
 
-const TEXT: &str = "
-parameter source = 20
-parameter r = 22, l = 0.02, c = 4.7e-5, period = 4e-4
-state v = 12, i = 0.5, tau = 0
-ramp = 3.8 + 4.4*tau/period
-control = 8.4*(v - 11.3)
-v' = (i - v/r)/c
-tau' = 1
-mode blocked
-  i' = -v/l
-  when control < ramp \"on\" -> conducts
-  when tau > period \"skip\"
-    tau := 0
-mode conducts
-  i' = (source - v)/l
-  when tau > period \"clock\" -> blocked
-    tau := 0
-  when control > ramp \"early\" -> blocked
-start in blocked
-end = 1
-";
+const TEXT: &str = include_str!("../../../../examples/orbits/converter.slip");
 
 const T: f64 = 4e-4;
 
@@ -68,7 +48,7 @@ fn a_buck_converter_flips() {
     let (on, state, monodromy) = exact(20.0);
     let start = [state.x * 1.0001, state.y * 0.999, 0.0];
     let guess =
-        Guess { state: Some(&start), itinerary: &["on", "clock"], ..Guess::default() };
+        Guess { state: Some(&start), itinerary: &["begins", "clock"], ..Guess::default() };
     let orbit = orbits.find(&parameters, &guess).expect("an orbit");
     assert!((orbit.segments[0].duration - on).abs() < 1e-10 * T);
     assert!((orbit.segments[0].state[0] - state.x).abs() < 1e-10);

@@ -6,18 +6,7 @@ use std::f64::consts::{PI, TAU};
 use stickslip_expression::System;
 use stickslip_orbits::{Guess, Orbit, OrbitError, Orbits, Verdict};
 
-pub const TEXT: &str = "
-parameter k = 1, c = 0.1, d = 1, a = 1, w = 1, e = 0.8
-state x = -0.98, v = -0.29, phase = -pi
-x' = v
-v' = -k*x - c*v + a*cos(phase)
-phase' = w
-when x > d \"impact\"
-  x := d
-  v := -e*v
-when phase > pi \"phase\"
-  phase := phase - 2*pi
-";
+pub const TEXT: &str = include_str!("../../../../examples/orbits/oscillator.slip");
 
 /// The closed form at parameters, with n periods of the force.
 #[derive(Clone, Copy, Debug)]

@@ -36,7 +36,7 @@ fn errors_say_what_and_where() {
     assert!(message(other, &["tick"]).contains("itinerary repeats after 5.0, and equations do not"), "{}", message(other, &["tick"]));
     // The event does not depend on the start.
     let zero = "state x = 0, y = 0\nx' = 0\ny' = 1\nwhen y > 1 \"a\"\n  y := 0\nend = 1";
-    assert_eq!(message_of(zero, &["a"]), Ok(1.0));
+    assert!(message_of(zero, &["a"]).is_ok_and(|period| (period - 1.0).abs() < 1e-14));
     // A damped spring has no orbit through its zero but the point itself.
     let spring = "state x = 1, v = 0\nx' = v\nv' = -x - 0.2*v\nwhen v falls through 0 \"top\"\n\
                   end = 1";
