@@ -147,7 +147,7 @@ def branch_picture(
     title: str,
     axes: tuple[str, str],
     points: list[tuple[float, float, bool, bool]],
-    specials: list[tuple[str, float, float]],
+    specials: list[tuple[str, float, float, int]],
 ) -> str: ...
 def run_many(
     system: FormulaSystem,

@@ -113,9 +113,9 @@ class Branch(Shown):
         def at(orbit: Orbit) -> tuple[float, float]:
             return orbit.parameters[self.parameter], float(orbit.segments[0].end[place])
 
-        axes = (self.parameter, f"{name} before “{self.points[0].segments[0].rule}”")
+        axes = (self.parameter, f"{name} before {self.points[0].segments[0].rule}")
         points = [(*at(it), it.admissible, it.stable) for it in self.points]
-        specials = [(it.kind, *at(it.orbit)) for it in self.specials]
+        specials = [(it.kind, *at(it.orbit), it.behind) for it in self.specials]
         return _native.branch_picture(title, axes, points, specials)
 
     def save_svg(self, path: str | Path, component: str | None = None) -> None:

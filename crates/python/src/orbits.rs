@@ -1,7 +1,7 @@
 //! Periodic orbits of systems of formulas, as the JSON of their documents.
 
 use pyo3::prelude::*;
-use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, Stretch, draw};
+use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
 use stickslip_orbits::document::{BranchDocument, OrbitDocument, OrbitRecord};
 use stickslip_orbits::{BranchOptions, Guess, Orbit, OrbitError, Orbits};
 
@@ -114,7 +114,7 @@ pub fn branch_picture(
     title: &str,
     axes: (String, String),
     points: Vec<(f64, f64, bool, bool)>,
-    specials: Vec<(String, f64, f64)>,
+    specials: Vec<(String, f64, f64, usize)>,
 ) -> String {
     let points = points.into_iter().map(|(x, y, followed, stable)| {
         let stretch = match (followed, stable) {
@@ -124,7 +124,11 @@ pub fn branch_picture(
         };
         BranchPoint { at: [x, y], stretch }
     });
-    let specials = specials.iter().map(|(kind, x, y)| (kind.as_str(), [*x, *y]));
+    let specials = specials.iter().map(|(name, x, y, behind)| SpecialPoint {
+        name,
+        at: [*x, *y],
+        behind: *behind,
+    });
     let (points, specials) = (points.collect(), specials.collect());
     draw(&BranchCurve { title, axes: [&axes.0, &axes.1], points, specials }).document()
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use stickslip_figure::Svg;
-use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, Stretch, draw};
+use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::picture::PictureFile;
@@ -184,18 +184,23 @@ fn curve(found: &FoundOrbit, branch: &Branch, shown: usize) -> Svg {
     let parameter = &system.parameters[branch.parameter].name;
     let at = |orbit: &Orbit| [orbit.parameters[branch.parameter], orbit.segments[0].end[shown]];
     let rule = branch.points[0].segments[0].leg.name(system);
-    let component = format!("{} before “{rule}”", system.components[shown].name);
+    let component = format!("{} before {rule}", system.components[shown].name);
     let stretch = |orbit: &Orbit| match (orbit.is_admissible(), orbit.is_stable()) {
         (false, _) => Stretch::Virtual,
         (true, true) => Stretch::Stable,
         (true, false) => Stretch::Unstable,
     };
     let points = branch.points.iter();
+    let specials = branch.specials.iter().map(|it| SpecialPoint {
+        name: it.kind.name(),
+        at: at(&it.orbit),
+        behind: it.behind,
+    });
     draw(&BranchCurve {
         title: &format!("{}: a branch of periodic orbits", found.name),
         axes: [parameter, &component],
         points: points.map(|it| BranchPoint { at: at(it), stretch: stretch(it) }).collect(),
-        specials: branch.specials.iter().map(|it| (it.kind.name(), at(&it.orbit))).collect(),
+        specials: specials.collect(),
     })
 }
 

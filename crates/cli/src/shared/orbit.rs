@@ -1,12 +1,15 @@
 //! Where an orbit of a system is searched for.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
 use stickslip_expression::System;
-use stickslip_files::input::number;
+use stickslip_files::input::{json, number, source};
+use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord};
 use stickslip_orbits::{Guess, Orbit, OrbitError, Orbits};
+use stickslip_plane::sealed;
 
-use super::system::{read, setting, time, title, values};
+use super::system::{place as parameter, read, setting, time, title, values};
 use crate::error::Failure;
 
 /// The orbit of a system.
@@ -22,13 +25,19 @@ pub struct GuessArguments {
 
     /// The rules that end the segments of the orbit, in order
     #[arg(long, value_name = "RULE,RULE,…", value_delimiter = ',', help_heading = "Guess")]
-    #[arg(required_unless_present = "settle", conflicts_with = "settle")]
+    #[arg(required_unless_present_any = ["settle", "near"])]
     pub itinerary: Vec<String>,
 
     /// The orbit to which a run has settled after this time, instead of --itinerary
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    #[arg(help_heading = "Guess")]
+    #[arg(help_heading = "Guess", conflicts_with = "itinerary")]
     pub settle: Option<f64>,
+
+    /// The orbit near that of a file of `orbit`, or near the last one of a file of `branch`, instead
+    /// of --itinerary; parameters that are not set are those of the file
+    #[arg(long, value_name = "FILE.json", help_heading = "Guess")]
+    #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
+    pub near: Option<PathBuf>,
 
     /// The value of a component at the start, instead of that of the system; may be repeated
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Guess")]
@@ -49,6 +58,17 @@ pub struct GuessArguments {
     pub durations: Option<Vec<f64>>,
 }
 
+/// What is read of a file of orbits.
+#[derive(Deserialize)]
+struct Written {
+    schema: String,
+    orbit: Option<OrbitRecord>,
+    points: Option<Vec<OrbitRecord>>,
+}
+
+/// Largest number of bytes of a file.
+const MOST_BYTES: u64 = 1 << 30;
+
 /// An orbit that was found, with its system.
 #[derive(Debug)]
 pub struct FoundOrbit {
@@ -67,6 +87,9 @@ impl GuessArguments {
     /// [`Failure`]: the system cannot be read, options do not fit it, or there is no orbit.
     pub fn find(&self) -> Result<FoundOrbit, Failure> {
         let (system, _) = read(&self.system)?;
+        if let Some(path) = &self.near {
+            return self.near(&system, path);
+        }
         let parameters = values(&system, &self.set)?;
         let mode = self.mode.as_deref().map(|name| place(&system, name)).transpose()?;
         let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
@@ -84,6 +107,30 @@ impl GuessArguments {
             None => orbits.find(&parameters, &guess),
         };
         let orbit = orbit.map_err(failure)?;
+        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
+    }
+
+    /// The orbit near that of a file.
+    fn near(&self, system: &System, path: &Path) -> Result<FoundOrbit, Failure> {
+        let shown = source::shown(path);
+        let unusable = |reason: String| Failure::input(shown, reason);
+        let text = source::read(path, MOST_BYTES)?;
+        sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
+        let written: Written = json::parse(&text).map_err(unusable)?;
+        let record = match (&*written.schema, written.orbit, written.points) {
+            (ORBIT, Some(orbit), _) => Some(orbit),
+            (BRANCH, _, Some(mut points)) => points.pop(),
+            _ => None,
+        };
+        let expected = format!("expected an orbit in the layout {ORBIT:?} or {BRANCH:?}");
+        let record = record.ok_or_else(|| unusable(expected))?;
+        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
+        let orbit = record.orbit(&orbits).map_err(failure)?;
+        let mut parameters = orbit.parameters.clone();
+        for (name, value) in &self.set {
+            parameters[parameter(system, "--set", name)?] = *value;
+        }
+        let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
         Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
     }
 

@@ -56,6 +56,15 @@ fn a_branch_is_followed_and_written() {
     assert_eq!(table[0][..6].join(","), "a,special,period,stable,followed,multiplier");
     let points = written["points"].as_array().unwrap().len();
     assert_eq!(table.len(), 1 + points + specials.len());
+    // It goes on from its last orbit.
+    let near = directory.run("orbit ball.slip --near branch.json --set a=0.048 --format json");
+    assert_eq!(near.code, 0, "{}", near.stderr);
+    let near: Value = serde_json::from_str(&near.stdout).unwrap();
+    assert_eq!(near["orbit"]["parameters"]["a"], 0.048);
+    let damaged = directory.read("branch.json").replacen("\"period\":1.0", "\"period\":1.1", 1);
+    directory.write("damaged.json", &damaged);
+    let refused = directory.run("orbit ball.slip --near damaged.json");
+    assert_eq!(refused.code, 2, "{}", refused.stderr);
     let picture = directory.read("branch.svg");
     assert!(picture.contains("stable") && picture.contains("flip") && picture.contains("fold"));
 }

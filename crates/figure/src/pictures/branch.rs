@@ -15,8 +15,8 @@ pub struct BranchCurve<'a> {
     pub axes: [&'a str; 2],
     /// The orbits, in the order of the branch.
     pub points: Vec<BranchPoint>,
-    /// What special orbits are called, and where they are.
-    pub specials: Vec<(&'a str, [f64; 2])>,
+    /// The special orbits, in the order of the branch.
+    pub specials: Vec<SpecialPoint<'a>>,
 }
 
 /// An orbit as a point.
@@ -26,6 +26,17 @@ pub struct BranchPoint {
     pub at: [f64; 2],
     /// What it is.
     pub stretch: Stretch,
+}
+
+/// A special orbit as a point.
+#[derive(Clone, Copy, Debug)]
+pub struct SpecialPoint<'a> {
+    /// What it is called.
+    pub name: &'a str,
+    /// The parameter, and what is drawn over it.
+    pub at: [f64; 2],
+    /// The number of orbits before it.
+    pub behind: usize,
 }
 
 /// Parts of a branch.
@@ -50,26 +61,27 @@ const SHAPES: [Shape; 4] = [Shape::Disc, Shape::Square, Shape::Ring, Shape::Cros
 /// Draws `branch`.
 #[must_use]
 pub fn draw(branch: &BranchCurve<'_>) -> Svg {
+    let whole = with_specials(branch);
     let mut series = Vec::new();
     for (stretch, name, stroke) in STRETCHES {
         let mut name = name.to_owned();
-        for points in runs(&branch.points, stretch) {
+        for points in runs(&whole, stretch) {
             let line = Some(stroke);
             series.push(Series { name: std::mem::take(&mut name), points, line, mark: None });
         }
     }
     let mut kinds: Vec<&str> = Vec::new();
-    for (kind, _) in &branch.specials {
-        if !kinds.contains(kind) {
-            kinds.push(kind);
+    for special in &branch.specials {
+        if !kinds.contains(&special.name) {
+            kinds.push(special.name);
         }
     }
     for (index, kind) in kinds.into_iter().enumerate() {
-        let own = branch.specials.iter().filter(|it| it.0 == kind);
+        let own = branch.specials.iter().filter(|it| it.name == kind);
         let colour = COLOURS[index % COLOURS.len()];
         series.push(Series {
             name: kind.to_owned(),
-            points: own.map(|(_, [x, y])| (*x, *y)).collect(),
+            points: own.map(|it| (it.at[0], it.at[1])).collect(),
             line: None,
             mark: Some(Mark { shape: SHAPES[index % SHAPES.len()], colour }),
         });
@@ -84,6 +96,20 @@ pub fn draw(branch: &BranchCurve<'_>) -> Svg {
         ChartAxis { name: branch.axes[place], range, scale: Scale::Linear }
     };
     chart::draw(&Chart { title: branch.title, x: axis(0), y: axis(1), series })
+}
+
+/// The orbits of a branch and the special ones among them, each as the stretch before it.
+fn with_specials(branch: &BranchCurve<'_>) -> Vec<BranchPoint> {
+    let mut whole: Vec<BranchPoint> = Vec::with_capacity(branch.points.len());
+    let mut specials = branch.specials.iter().peekable();
+    for (place, point) in branch.points.iter().enumerate() {
+        while let Some(special) = specials.next_if(|it| it.behind <= place) {
+            let stretch = whole.last().map_or(point.stretch, |last| last.stretch);
+            whole.push(BranchPoint { at: special.at, stretch });
+        }
+        whole.push(*point);
+    }
+    whole
 }
 
 /// The pieces of a branch that are stretches of one sort. Each begins at the last point before it.

@@ -93,6 +93,9 @@ fn a_bouncing_ball_folds_and_flips_and_doubles() {
     assert!((fold[0] - 0.014043083214).abs() < 1e-11, "{fold:?}");
     let flip = values(&branch, SpecialKind::Flip);
     assert!((flip[0] - 0.029654967002).abs() < 1e-11, "{flip:?}");
+    // The system follows the orbits behind the fold too.
+    let behind = branch.points.iter().filter(|it| it.start < 0.0);
+    assert!(behind.clone().count() > 4 && behind.take(4).all(|it| !it.is_stable()));
     let flip = branch.specials.iter().find(|it| it.kind == SpecialKind::Flip).expect("a flip");
     let multipliers = flip.orbit.multipliers.as_ref().expect("no graze");
     assert!((multipliers[0][0] + 1.0).abs() < 1e-9 && (multipliers[1][0] + 0.49).abs() < 1e-9);

@@ -40,19 +40,9 @@ fn a_block_begins_to_stick() {
     let h11 = (-c * time / 2.0).exp()
         * ((rate * time).cos() + c * (rate * time).sin() / (2.0 * rate));
     assert!((multipliers[0][0] - h11).abs() < 1e-2, "{multipliers:?} {h11}");
-
-    // The same by `sliding on`, whose modes are made of one. They include segments that begin on
-    // a double zero of the condition for sticking.
-    let text = "parameter a = 0.8, w = 1.4, c = 0.1, f = 0.4, belt = 1\n\
-                state x = 0.4, v = 0, phase = 0\nx' = v\nphase' = w\n\
-                when phase > 2*pi \"phase\"\n  phase := phase - 2*pi\n\
-                mode move\n  sliding on v = belt\n\
-                v' = a*cos(phase) - x - c*v - f*sign(v - belt)\nend = 100";
-    let filippov = Orbits::new(&System::parse(text).expect("a system")).expect("orbits");
-    let one = at(0.8);
-    let two = filippov.settled(&[0.8, w, c, 0.4, 1.0], &Guess::default(), 400.0).expect("it");
-    assert!(two.is_admissible() && one.is_admissible(), "{:?} {:?}", one.verdict, two.verdict);
-    let pair = [one, two].map(|it| it.multipliers.expect("no graze"));
-    assert!((pair[0][0][0] - pair[1][0][0]).abs() < 1e-9, "{pair:?}");
-    assert_eq!(pair[1][1], [0.0, 0.0]);
+    // Far behind it the branch goes on: the orbit that sticks is followed by the system.
+    let orbit = at(0.8);
+    let branch = orbits.branch(&orbit, 0, [0.7, 1.2], &BranchOptions::default()).expect("it");
+    assert!(branch.points.iter().all(|it| it.multipliers.as_ref().is_some_and(|all| all[1] == [0.0; 2])));
+    assert!(branch.points.iter().any(|it| it.is_admissible()));
 }
