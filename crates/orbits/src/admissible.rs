@@ -5,12 +5,13 @@
 //! state, away from zeros of conditions, however unstable the orbit is. The rules that act must be
 //! those of the itinerary, at their times, and lead to its modes.
 
-use stickslip_expression::{Compiled, InvalidValue, Next, Recording, Rule, System};
+use stickslip_expression::{Compiled, InvalidValue, Next, Recording, Rule, System, Trigger};
 use stickslip_solver::dynamic::{DynamicSwitch, ReadableDynamic};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
 use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
+use crate::itinerary::Leg;
 use crate::orbit::{Obstacle, Verdict};
 
 /// How far an event may be from its place, of the period.
@@ -70,8 +71,7 @@ pub(crate) fn verdict(
     }
     let runnable = compiled.with(&draft.parameters)?;
     let (m, starts) = (draft.legs.len(), draft.starts());
-    let long: Vec<usize> =
-        (0..m).filter(|&i| draft.durations[i] > SHORT * period).collect();
+    let long: Vec<usize> = (0..m).filter(|&i| draft.durations[i] > SHORT * period).collect();
     let mut undecided = None;
     for (place, &from) in long.iter().enumerate() {
         let last = place + 1 == long.len();
@@ -81,7 +81,8 @@ pub(crate) fn verdict(
         let middle = |segment: usize| time(segment) + 0.5 * draft.durations[segment % m];
         let state = equations.within(draft, from, 0.5 * draft.durations[from])?;
         let leg = draft.legs[from];
-        let own = runnable.clone().starting(Some(leg.mode + modes), Some(middle(from)), Some(&state))?;
+        let own =
+            runnable.clone().starting(Some(leg.mode + modes), Some(middle(from)), Some(&state))?;
         let expected: Vec<(usize, f64)> =
             (from..to).map(|i| (i % m, time(i) + draft.durations[i % m])).collect();
         let obstacle = |events: &[DynamicSwitch<usize>]| {
@@ -94,7 +95,8 @@ pub(crate) fn verdict(
                 let mut events = Vec::new();
                 let _ = own.events(EmbeddedPair::Dop853, middle(to), options, &mut events);
                 let undecided = || Verdict::Undecided(system.explained(&error));
-                let acts = obstacle(&events).filter(|it| !matches!(it, Verdict::Virtual(Obstacle::Idle { .. })));
+                let acts = obstacle(&events)
+                    .filter(|it| !matches!(it, Verdict::Virtual(Obstacle::Idle { .. })));
                 return Ok(acts.unwrap_or_else(undecided));
             }
         };
@@ -103,7 +105,23 @@ pub(crate) fn verdict(
         }
         undecided = undecided.or_else(|| doubt(system, &found));
     }
+    let undecided = undecided.or_else(|| later_clock(system, draft));
     Ok(undecided.map_or(Verdict::Admissible, Verdict::Undecided))
+}
+
+/// A clock that may act in a later period, though it does not act in the first one.
+fn later_clock(system: &System, draft: &Draft) -> Option<String> {
+    let clocks = draft.legs.iter().flat_map(|leg| {
+        let rules = system.modes[leg.mode].rules.iter().enumerate();
+        rules.map(|(place, rule)| (Leg { rule: place, ..*leg }, rule))
+    });
+    let mut later = clocks.filter(|(own, rule)| {
+        let is_clock = !matches!(rule.trigger, Trigger::When(..));
+        let known = draft.legs.iter().any(|leg| leg.rule(system).trigger == rule.trigger);
+        is_clock && !is_note(rule) && !known && !draft.legs.contains(own)
+    });
+    let name = later.next()?.0.name(system);
+    Some(format!("rule `{name}` acts at times that are not those of the orbit"))
 }
 
 /// Where a run does not do what is expected: events of segments at times.
@@ -148,9 +166,8 @@ fn is_note(rule: &Rule) -> bool {
 
 /// What rounding hides along a run.
 fn doubt(system: &System, found: &Recording) -> Option<String> {
-    let touch = found.touches.iter().find(|touch| {
-        !is_note(&system.modes[touch.mode].rules[touch.guard])
-    });
+    let touch =
+        found.touches.iter().find(|touch| !is_note(&system.modes[touch.mode].rules[touch.guard]));
     if let Some(touch) = touch {
         let rule = system.modes[touch.mode].rules[touch.guard].name(touch.guard);
         return Some(format!("rule `{rule}` nearly acts at t = {:?}", touch.s));

@@ -202,7 +202,8 @@ impl Orbits {
         let mut step = options.first_step;
         while !along.is_at_end(&last) {
             if half.points.len() + 1 >= options.most_points {
-                half.objection = Some(format!("the branch goes on behind {} points", options.most_points));
+                half.objection =
+                    Some(format!("the branch goes on behind {} points", options.most_points));
                 break;
             }
             let next = match along.step(&last, step) {
@@ -264,9 +265,9 @@ fn joined(
         before = points.len();
         branch.points.extend(points.into_iter().rev());
         let turned = specials.into_iter().rev();
-        branch.specials.extend(
-            turned.map(|it| SpecialOrbit { behind: before + 1 - it.behind, ..it }),
-        );
+        branch
+            .specials
+            .extend(turned.map(|it| SpecialOrbit { behind: before + 1 - it.behind, ..it }));
         branch.objection = match (branch.objection, objection) {
             (Some(one), Some(other)) => Some(format!("{one}; {other}")),
             (one, other) => one.or(other),
@@ -275,9 +276,7 @@ fn joined(
     branch.points.push(start);
     branch.points.extend(ahead.points);
     let shifted = ahead.specials.into_iter();
-    branch
-        .specials
-        .extend(shifted.map(|it| SpecialOrbit { behind: before + it.behind, ..it }));
+    branch.specials.extend(shifted.map(|it| SpecialOrbit { behind: before + it.behind, ..it }));
     branch
 }
 
@@ -287,12 +286,7 @@ impl Orbits {
     ///
     /// # Errors
     /// [`OrbitError`]; no orbit is found if there is no flip nearby.
-    pub fn doubled(
-        &self,
-        flip: &Orbit,
-        parameter: usize,
-        aside: f64,
-    ) -> Result<Orbit, OrbitError> {
+    pub fn doubled(&self, flip: &Orbit, parameter: usize, aside: f64) -> Result<Orbit, OrbitError> {
         let accepted = aside > 0.0 && aside <= 0.5;
         InvalidValue::check("the distance from a flip", aside, "above 0, to 0.5", accepted)?;
         let count = self.system.parameters.len();
@@ -327,9 +321,8 @@ impl Orbits {
         let apart = &to - &from;
         let length = apart.norm();
         let away = apart / length;
-        let condition = |place: &nalgebra::DVector<f64>| {
-            (away.dot(&(place - &from)) - length, away.clone())
-        };
+        let condition =
+            |place: &nalgebra::DVector<f64>| (away.dot(&(place - &from)) - length, away.clone());
         let zero = crate::newton::correct(&equations, &to, Some(&condition))?;
         let (found, evaluation) = (equations.draft(&zero.at), equations.at(&zero.at)?);
         self.orbit(&equations, &found, &evaluation, zero.error)

@@ -127,12 +127,16 @@ impl Verdict {
                 let rule = own.get(*rule).map_or_else(String::new, |own| own.name(*rule));
                 Some(format!("rule `{rule}` acts on segment {segment}, at t = {s:?}"))
             }
-            Self::Virtual(Obstacle::Idle { segment }) => {
-                Some(format!("rule `{}` does not act at the end of segment {segment}", name(*segment)))
-            }
+            Self::Virtual(Obstacle::Idle { segment }) => Some(format!(
+                "rule `{}` does not act at the end of segment {segment}",
+                name(*segment)
+            )),
             Self::Virtual(Obstacle::Branches { segment, to }) => {
                 let to = &system.modes[*to].name;
-                Some(format!("rule `{}` leads to mode {to} behind segment {segment}", name(*segment)))
+                Some(format!(
+                    "rule `{}` leads to mode {to} behind segment {segment}",
+                    name(*segment)
+                ))
             }
             Self::Virtual(Obstacle::Backwards { segment }) => {
                 Some(format!("the duration of segment {segment} is negative"))

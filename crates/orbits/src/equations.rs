@@ -14,7 +14,7 @@ mod flow;
 
 use nalgebra::{DMatrix, DVector};
 use stickslip_expression::{
-    Formula, Graph, Inputs, InvalidValue, Program, System, Trigger, Variable,
+    Formula, Graph, Inputs, InvalidValue, Next, Program, System, Trigger, Variable,
 };
 use stickslip_solver::{GivenValue, Options};
 
@@ -62,8 +62,8 @@ pub(crate) struct Equations {
     events: Vec<EventFormulas>,
     /// The period of a clock and its derivatives by parameters, and how often it ticks.
     clock: Option<(Program, f64)>,
-    /// Components that nothing changes along the itinerary.
-    still: Vec<bool>,
+    /// Components that need not come back: nothing changes them, or nothing else reads them.
+    apart: Vec<bool>,
     /// The first draft.
     anchor: Draft,
     sizes: DVector<f64>,
@@ -115,14 +115,24 @@ impl Equations {
             EventFormulas::new(graph, system, *leg, *tick, &places)
         };
         let events = legs.iter().zip(&ticks).map(event).collect();
-        let still = (0..n).map(|place| is_still(system, &legs, place)).collect();
+        let apart = (0..n).map(|place| is_apart(system, &legs, place)).collect();
         let sizes = sizes(&anchor, active);
         let least = sizes.rows(0, n).iter().fold(f64::INFINITY, |least, size| least.min(*size));
         let options = Options { atol: options.rtol * 0.1 * least, ..*options };
         let parameters = anchor.parameters.clone();
         let rows = DVector::from_element(m * (n + 1) + 1, 1.0);
         let mut equations = Self {
-            n, legs, active: places, parameters, flows, events, clock, still, anchor, sizes, rows,
+            n,
+            legs,
+            active: places,
+            parameters,
+            flows,
+            events,
+            clock,
+            apart,
+            anchor,
+            sizes,
+            rows,
             options,
         };
         equations.measure_rows(system)?;
@@ -130,7 +140,12 @@ impl Equations {
     }
 
     /// What happens where a rule acts.
-    pub fn event(system: &System, leg: Leg, parameters: &[f64], (s, state): (f64, &[f64])) -> Event {
+    pub fn event(
+        system: &System,
+        leg: Leg,
+        parameters: &[f64],
+        (s, state): (f64, &[f64]),
+    ) -> Event {
         let mut graph = system.graph.clone();
         EventFormulas::new(&mut graph, system, leg, None, &[]).at(parameters, s, state)
     }
@@ -194,13 +209,14 @@ impl Equations {
         let mut ends = Vec::with_capacity(m);
         for (i, s) in draft.starts().into_iter().enumerate() {
             let duration = draft.durations[i];
-            let flown = self.flows[i].run(parameters, (s, &draft.states[i]), duration, &self.options);
+            let flown =
+                self.flows[i].run(parameters, (s, &draft.states[i]), duration, &self.options);
             let flown = flown.map_err(|error| OrbitError::Run { segment: i, error })?;
             let event = self.events[i].at(parameters, s + duration, &flown.state);
             let next = (i + 1) % m;
             for k in 0..n {
                 let row = next * n + k;
-                if next == 0 && self.still[k] {
+                if next == 0 && self.apart[k] {
                     values[row] = draft.states[0][k] - self.anchor.states[0][k];
                     slopes[(row, k)] += 1.0;
                     continue;
@@ -280,7 +296,7 @@ impl Equations {
     pub fn returning(&self, slopes: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
         let count = self.count();
         let mut own = slopes.columns(0, count).into_owned();
-        for k in (0..self.n).filter(|k| !self.still[*k]) {
+        for k in (0..self.n).filter(|k| !self.apart[*k]) {
             own[(k, k)] += (factor - 1.0) * self.sizes[k] / self.rows[k];
         }
         let row = count - 1;
@@ -306,7 +322,7 @@ impl Equations {
             }
             product = saltation * flown.by.columns(0, n) * product;
         }
-        let moving: Vec<usize> = (0..n).filter(|k| !self.still[*k]).collect();
+        let moving: Vec<usize> = (0..n).filter(|k| !self.apart[*k]).collect();
         let product = product.select_rows(&moving).select_columns(&moving);
         let last = &ends.last()?.event.slopes_after;
         let trivial = self.clock.is_none().then(|| last.select_rows(&moving));
@@ -320,17 +336,18 @@ impl Equations {
         flown.map(|it| it.state).map_err(|error| OrbitError::Run { segment: i, error })
     }
 
-    /// Whether what depends on the time is the same one period later.
+    /// Whether what depends on the time is the same one period later, at both ends of segments.
     pub fn repeats(&self, draft: &Draft, ends: &[End]) -> bool {
-        let period = draft.period();
-        let starts = draft.starts();
-        (0..self.legs.len()).all(|i| {
-            let (s, event) = (starts[i] + draft.durations[i] + period, &ends[i].event);
-            let later = self.events[i].at(&draft.parameters, s, &ends[i].flown.state);
-            let differences = (&later.slopes - &event.slopes).abs();
-            let most = event.slopes.abs().add_scalar(1.0) * 1e-6;
-            self.clock.is_none() || differences.iter().zip(&most).all(|(one, most)| one < most)
-        })
+        let (period, starts) = (draft.period(), draft.starts());
+        let is_same = |i: usize, s: f64, state: &[f64]| {
+            let at = |s: f64| self.events[i].at(&draft.parameters, s, state);
+            at(s).is_like(&at(s + period))
+        };
+        self.clock.is_none()
+            || (0..self.legs.len()).all(|i| {
+                is_same(i, starts[i], &draft.states[i])
+                    && is_same(i, starts[i] + draft.durations[i], &ends[i].flown.state)
+            })
     }
 
     /// Gives each equation its size, and refuses conditions that nothing moves.
@@ -366,13 +383,31 @@ fn sizes(draft: &Draft, active: &[(usize, f64)]) -> DVector<f64> {
     DVector::from_vec(states.chain(times).chain(active.iter().map(|(_, size)| *size)).collect())
 }
 
-/// Whether nothing changes a component along an itinerary.
-fn is_still(system: &System, legs: &[Leg], place: usize) -> bool {
-    legs.iter().all(|leg| {
+/// Whether a component need not come back at the end of an itinerary: nothing changes it, or it is
+/// a counter, which nothing else reads.
+pub(crate) fn is_apart(system: &System, legs: &[Leg], place: usize) -> bool {
+    let is_still = legs.iter().all(|leg| {
         let slope = system.modes[leg.mode].slopes[place];
         let changes = &leg.rule(system).changes;
         system.graph.value(slope) == Some(0.0) && changes.iter().all(|(own, _)| *own != place)
-    })
+    });
+    let mut others = Vec::new();
+    for leg in legs {
+        let mode = &system.modes[leg.mode];
+        let slopes = mode.slopes.iter().enumerate().filter(|(own, _)| *own != place);
+        others.extend(slopes.map(|(_, slope)| *slope));
+        for rule in &mode.rules {
+            let changes = rule.changes.iter().filter(|(own, _)| *own != place);
+            others.extend(changes.map(|(_, formula)| *formula));
+            if let Trigger::When(guard, _) = rule.trigger {
+                others.push(guard);
+            }
+            if let Next::Branch(condition, ..) = rule.next {
+                others.push(condition);
+            }
+        }
+    }
+    is_still || !system.graph.reads(&others).contains(&Variable::Component(flow::narrow(place)))
 }
 
 /// The number of the tick at the end of each segment.

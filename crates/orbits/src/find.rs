@@ -1,12 +1,10 @@
 //! Orbits from a guess, from a run that settles, and from an orbit at other parameters.
 
-use stickslip_expression::{
-    Compiled, InvalidValue, Next, Rule, Runnable, System, Trigger,
-};
+use stickslip_expression::{Compiled, InvalidValue, Next, Rule, Runnable, System, Trigger};
 use stickslip_solver::{EmbeddedPair, GivenValue, Options, Outcome};
 
 use crate::admissible::{Halfway, verdict};
-use crate::equations::{Draft, Equations, Evaluation, clock_values};
+use crate::equations::{Draft, Equations, Evaluation, clock_values, is_apart};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after, require_short, rules_named};
 use crate::multipliers::multipliers;
@@ -105,11 +103,22 @@ impl Orbits {
         });
         let last = &events[events.len().saturating_sub(MOST_EVENTS)..];
         let not_settled = OrbitError::NotSettled { events: last.len(), tolerance: REPEATS };
+        let all = last.iter().map(|it| Leg { mode: it.from, rule: it.guard, next: it.to });
+        let all: Vec<Leg> = all.collect();
+        let apart: Vec<bool> = (0..self.system.components.len())
+            .map(|place| is_apart(&self.system, &all, place))
+            .collect();
         let same = |one: usize, other: usize| {
             let (one, other) = (&last[one], &last[other]);
-            let near = |(x, y): (&f64, &f64)| (x - y).abs() <= REPEATS * x.abs().max(y.abs()).max(REPEATS);
+            let near =
+                |(x, y): (&f64, &f64)| (x - y).abs() <= REPEATS * x.abs().max(y.abs()).max(REPEATS);
             (one.from, one.guard, one.to) == (other.from, other.guard, other.to)
-                && one.after.iter().zip(&other.after).all(near)
+                && one
+                    .after
+                    .iter()
+                    .zip(&other.after)
+                    .zip(&apart)
+                    .all(|(it, apart)| *apart || near(it))
         };
         let repeats = |m: &usize| {
             let rounds = (last.len() - 1) / m;

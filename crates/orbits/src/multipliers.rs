@@ -39,7 +39,10 @@ pub(crate) fn multipliers(
     found.resize(all, [0.0, 0.0]);
     let size = |[re, im]: &[f64; 2]| re.hypot(*im);
     found.sort_by(|one, other| {
-        size(other).total_cmp(&size(one)).then(other[1].total_cmp(&one[1])).then(other[0].total_cmp(&one[0]))
+        size(other)
+            .total_cmp(&size(one))
+            .then(other[1].total_cmp(&one[1]))
+            .then(other[0].total_cmp(&one[0]))
     });
     Some(found)
 }

@@ -46,9 +46,11 @@ pub(crate) fn correct(
     found.map_err(|unsolved| {
         let (reason, at, update) = match unsolved {
             Unsolved::Leaves => ("the search leads far away", None, f64::INFINITY),
-            Unsolved::Dependent => {
-                ("orbits nearby are not isolated, or the equations do not determine one", None, f64::NAN)
-            }
+            Unsolved::Dependent => (
+                "orbits nearby are not isolated, or the equations do not determine one",
+                None,
+                f64::NAN,
+            ),
             Unsolved::Ceases { at, update } => match failed.take() {
                 Some(error) => return error,
                 None => ("the flow ends", Some(at), update),

@@ -153,9 +153,10 @@ fn write_table(path: &Path, document: &BranchDocument) -> Result<StoredFile, Fai
         rows.number(orbit.period);
         rows.field(orbit.stable.to_string());
         rows.field(orbit.admissible.to_string());
-        let largest = orbit.multipliers.as_ref().map(|all| {
-            all.iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max)
-        });
+        let largest = orbit
+            .multipliers
+            .as_ref()
+            .map(|all| all.iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max));
         match largest {
             Some(size) => rows.number(size),
             None => rows.field("inf"),

@@ -91,7 +91,8 @@ fn table(out: &mut dyn Write, found: &FoundOrbit, document: &OrbitDocument) -> i
     lines.push(("stable", yes(orbit.stable)));
     lines.push(("followed by the system", orbit.obstacle.clone().unwrap_or_else(|| yes(true))));
     let start = orbit.segments.first().map_or(&[][..], |it| &it.state);
-    let names: Vec<String> = document.components.iter().map(|it| format!("{it} at the start")).collect();
+    let names: Vec<String> =
+        document.components.iter().map(|it| format!("{it} at the start")).collect();
     lines.extend(names.iter().map(String::as_str).zip(start.iter().map(|it| number(*it))));
     text::pairs(out, &lines)
 }

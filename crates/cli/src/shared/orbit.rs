@@ -139,7 +139,8 @@ impl GuessArguments {
         if self.start.is_empty() {
             return Ok(None);
         }
-        let runnable = system.with(parameters).map_err(|error| Failure::Usage(error.to_string()))?;
+        let runnable =
+            system.with(parameters).map_err(|error| Failure::Usage(error.to_string()))?;
         let mut state = runnable.start().state.to_vec();
         for (name, value) in &self.start {
             let place = system.components.iter().position(|it| it.name == *name);

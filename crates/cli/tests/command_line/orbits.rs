@@ -77,12 +77,20 @@ fn what_has_no_orbit_is_refused() {
         ("orbit ball.slip", 2, "--itinerary"),
         ("orbit ball.slip --itinerary bonce", 2, "a rule of mode main, which has bounce, period"),
         ("orbit ball.slip --itinerary period --mode up", 2, "--mode up: expected one of main"),
-        ("orbit ball.slip --itinerary period --start y=1", 2, "--start y: the state has x, v, phase"),
+        (
+            "orbit ball.slip --itinerary period --start y=1",
+            2,
+            "--start y: the state has x, v, phase",
+        ),
         ("orbit ball.slip --itinerary period --set b=1", 2, "--set b: the system has no such"),
         ("orbit ball.slip --settle 0.5", 1, "the run does not settle"),
         ("branch ball.slip --itinerary period,bounce --over b=0:1", 2, "--over b"),
         ("branch ball.slip --itinerary period,bounce --over a=1:2", 2, "a = 0.02 is out of range"),
-        ("branch ball.slip --itinerary period,bounce --over a=0:1 --longest-step 2", 2, "1e-7 to 1"),
+        (
+            "branch ball.slip --itinerary period,bounce --over a=0:1 --longest-step 2",
+            2,
+            "1e-7 to 1",
+        ),
     ] {
         let ran = directory.run(arguments);
         assert_eq!(ran.code, code, "{arguments}: {}", ran.stderr);

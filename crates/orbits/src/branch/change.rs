@@ -77,7 +77,8 @@ impl Along<'_> {
             if (one < 0.0) == (other < 0.0) {
                 continue;
             }
-            let zero = self.zero(low_point, (high - low, one, other), |it| self.margin(&margin, it));
+            let zero =
+                self.zero(low_point, (high - low, one, other), |it| self.margin(&margin, it));
             // The tangent at the point below is not that at the start of the step.
             if let Ok(Some((at, point))) = zero {
                 return Ok(Some((low + at, self.special(kind, Some(segment), rule, point))));
@@ -153,7 +154,11 @@ impl Along<'_> {
             Margin::Duration { segment } => Some(orbit.segments[segment].duration),
             Margin::AtEnd { segment, rule } => {
                 let s: f64 = orbit.segments[..=segment].iter().map(|it| it.duration).sum();
-                self.condition(point, (segment, rule), (orbit.start + s, &orbit.segments[segment].end))
+                self.condition(
+                    point,
+                    (segment, rule),
+                    (orbit.start + s, &orbit.segments[segment].end),
+                )
             }
             Margin::AtStart { segment, rule } => {
                 let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
@@ -210,9 +215,9 @@ impl Along<'_> {
         // What acts in both directions acts from the side on which the segment is.
         let turned = direction == Direction::Either && at_start < 0.0;
         let sign = if turned { -1.0 } else { 1.0 };
-        let values = events.iter().filter_map(|event| {
-            self.condition(point, (segment, rule), (event.s, &event.before))
-        });
+        let values = events
+            .iter()
+            .filter_map(|event| self.condition(point, (segment, rule), (event.s, &event.before)));
         values.map(|value| sign * value).min_by(f64::total_cmp)
     }
 }

@@ -59,11 +59,7 @@ impl Along<'_> {
     }
 
     /// The place near another one with this value of the parameter.
-    fn at_parameter(
-        &self,
-        near: &DVector<f64>,
-        value: f64,
-    ) -> Result<DVector<f64>, OrbitError> {
+    fn at_parameter(&self, near: &DVector<f64>, value: f64) -> Result<DVector<f64>, OrbitError> {
         let (last, wanted) = (self.last(), value / (self.range[1] - self.range[0]));
         let condition = |place: &DVector<f64>| {
             let mut axis = DVector::zeros(place.len());
@@ -91,9 +87,8 @@ impl Along<'_> {
     /// The point of the branch that is ahead of another one by a length along its tangent.
     pub fn ahead(&self, from: &Point, length: f64) -> Result<Point, OrbitError> {
         let start = &from.place + length * &from.tangent;
-        let condition = |place: &DVector<f64>| {
-            (from.tangent.dot(&(place - &start)), from.tangent.clone())
-        };
+        let condition =
+            |place: &DVector<f64>| (from.tangent.dot(&(place - &start)), from.tangent.clone());
         let zero = correct(self.equations, &start, Some(&condition))?;
         self.point(zero.at, &from.tangent)
     }

@@ -92,9 +92,11 @@ impl Test {
     /// is not a special orbit.
     pub fn kind(&self, before: &Point, point: &Point) -> Option<(SpecialKind, Option<usize>)> {
         let has = |re: f64| {
-            point.orbit.multipliers.as_ref().is_none_or(|all| {
-                all.iter().any(|it| (it[0] - re).hypot(it[1]) < NEAR)
-            })
+            point
+                .orbit
+                .multipliers
+                .as_ref()
+                .is_none_or(|all| all.iter().any(|it| (it[0] - re).hypot(it[1]) < NEAR))
         };
         match self {
             Self::Fold => has(1.0).then_some((SpecialKind::Fold, None)),

@@ -14,6 +14,7 @@ pub(crate) struct EventFormulas {
     program: Program,
     n: usize,
     columns: usize,
+    conditions: usize,
 }
 
 /// An event at a place. Columns of derivatives are those of the state, the time and parameters.
@@ -35,6 +36,8 @@ pub(crate) struct Event {
     pub choice: f64,
     /// The rate of the condition in the mode that follows, without the event's changes.
     pub rate_after: f64,
+    /// The conditions of all rules of the mode.
+    pub conditions: Vec<f64>,
 }
 
 impl EventFormulas {
@@ -56,8 +59,7 @@ impl EventFormulas {
             // An itinerary has no such rule.
             Trigger::At(_) => graph.constant(0.0),
         };
-        let mut after: Vec<Formula> =
-            (0..n).map(|place| graph.component(narrow(place))).collect();
+        let mut after: Vec<Formula> = (0..n).map(|place| graph.component(narrow(place))).collect();
         for &(place, formula) in &rule.changes {
             after[place] = formula;
         }
@@ -83,14 +85,21 @@ impl EventFormulas {
         formulas.extend(&mode.slopes);
         formulas.extend(&behind);
         formulas.extend([choice, rate_after]);
+        let before = formulas.len();
+        formulas.extend(mode.rules.iter().filter_map(|rule| match rule.trigger {
+            Trigger::When(guard, _) => Some(guard),
+            _ => None,
+        }));
+        let conditions = formulas.len() - before;
         let inputs = Inputs { components: n, parameters: system.parameters.len(), fixed: true };
-        Self { program: Program::compile(graph, &formulas, inputs), n, columns }
+        Self { program: Program::compile(graph, &formulas, inputs), n, columns, conditions }
     }
 
     /// The event at a place.
     pub fn at(&self, parameters: &[f64], s: f64, state: &[f64]) -> Event {
-        let Self { n, columns, .. } = *self;
-        let mut values = vec![f64::NAN; 1 + columns + n + n * columns + 2 * n + 2];
+        let Self { n, columns, conditions, .. } = *self;
+        let count = 1 + columns + n + n * columns + 2 * n + 2 + conditions;
+        let mut values = vec![f64::NAN; count];
         self.program.with(parameters).run(s, state, &mut values);
         let mut rest = &values[..];
         let mut take = |count: usize| {
@@ -107,6 +116,7 @@ impl EventFormulas {
             slopes_after: DVector::from_column_slice(take(n)),
             choice: take(1)[0],
             rate_after: take(1)[0],
+            conditions: take(conditions).to_vec(),
         }
     }
 }
@@ -120,6 +130,18 @@ impl Event {
 }
 
 impl Event {
+    /// Whether the formulas have the same values at another time.
+    pub fn is_like(&self, later: &Self) -> bool {
+        let own = [&self.after, &self.slopes, &self.slopes_after].map(|it| it.as_slice());
+        let others = [&later.after, &later.slopes, &later.slopes_after].map(|it| it.as_slice());
+        let own = own.into_iter().chain([self.after_by.as_slice(), &self.conditions]);
+        let others = others.into_iter().chain([later.after_by.as_slice(), &later.conditions]);
+        own.zip(others).all(|(own, others)| {
+            let size = own.iter().fold(f64::MIN_POSITIVE, |size, it| size.max(it.abs()));
+            own.iter().zip(others).all(|(one, other)| (one - other).abs() <= LIKE * size)
+        })
+    }
+
     /// Whether the mode that follows slides along what was reached: there the condition stays zero.
     pub fn slides_behind(&self) -> bool {
         let n = self.slopes.len();
@@ -129,16 +151,13 @@ impl Event {
     }
 }
 
+/// Values that differ by no more than this part are the same.
+const LIKE: f64 = 1e-6;
 /// A rate is zero if it is less than this part of what it is made of.
 const STILL: f64 = 1e-10;
 
 /// The time since a tick of a clock.
-fn since_tick(
-    graph: &mut Graph,
-    period: Formula,
-    phase: Formula,
-    number: f64,
-) -> Formula {
+fn since_tick(graph: &mut Graph, period: Formula, phase: Formula, number: f64) -> Formula {
     let (time, number) = (graph.time(), graph.constant(number));
     let ticks = graph.binary(Binary::Mul, number, period);
     let tick = graph.binary(Binary::Add, phase, ticks);
@@ -154,8 +173,7 @@ pub(crate) fn by_each(
 ) -> Vec<Formula> {
     let components = (0..n).map(|place| Variable::Component(narrow(place)));
     let parameters = active.iter().map(|&place| Variable::Parameter(narrow(place)));
-    let all: Vec<Variable> =
-        components.chain([Variable::Time]).chain(parameters).collect();
+    let all: Vec<Variable> = components.chain([Variable::Time]).chain(parameters).collect();
     let by = |own: Variable, graph: &mut Graph| {
         graph.slope(formula, &mut |graph, variable| {
             graph.constant(f64::from(u8::from(variable == own)))

@@ -64,7 +64,9 @@ fn random_parameters_have_the_orbits_of_the_closed_form() {
             }
             match orbit.verdict {
                 Verdict::Admissible => assert!(room > -1e-9, "{a} {w} {r} {n} {sine}: {room}"),
-                Verdict::Virtual(_) => assert!(room < 0.0, "{a} {w} {r} {n} {sine}: {room} {orbit:?}"),
+                Verdict::Virtual(_) => {
+                    assert!(room < 0.0, "{a} {w} {r} {n} {sine}: {room} {orbit:?}")
+                }
                 Verdict::Undecided(ref reason) => panic!("{a} {w} {r} {n} {sine}: {reason}"),
             }
             admissible += usize::from(orbit.is_admissible());

@@ -37,9 +37,7 @@ fn an_impact_oscillator_flips_and_grazes() {
 
 #[test]
 fn an_impact_oscillator_grazes_and_folds() {
-    for (w, graze, fold) in
-        [(1.3, 0.702139587262, 0.205318870798), (1.0, 0.1, 0.099970753628)]
-    {
+    for (w, graze, fold) in [(1.3, 0.702139587262, 0.205318870798), (1.0, 0.1, 0.099970753628)] {
         let branch = impacts(w);
         let found = values(&branch, SpecialKind::Grazing);
         assert!(found.iter().any(|it| (it - graze).abs() < 1e-11), "{w}: {found:?}");

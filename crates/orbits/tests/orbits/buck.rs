@@ -47,8 +47,7 @@ fn a_buck_converter_flips() {
     let mut parameters = orbits.system().values();
     let (on, state, monodromy) = exact(20.0);
     let start = [state.x * 1.0001, state.y * 0.999, 0.0];
-    let guess =
-        Guess { state: Some(&start), itinerary: &["begins", "clock"], ..Guess::default() };
+    let guess = Guess { state: Some(&start), itinerary: &["begins", "clock"], ..Guess::default() };
     let orbit = orbits.find(&parameters, &guess).expect("an orbit");
     assert!((orbit.segments[0].duration - on).abs() < 1e-10 * T);
     assert!((orbit.segments[0].state[0] - state.x).abs() < 1e-10);

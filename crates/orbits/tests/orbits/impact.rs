@@ -21,8 +21,7 @@ pub struct Closed {
 }
 
 impl Closed {
-    pub const EXAMPLE: Self =
-        Self { k: 1.0, c: 0.1, d: 1.0, a: 1.0, w: 1.0, e: 0.8, n: 1.0 };
+    pub const EXAMPLE: Self = Self { k: 1.0, c: 0.1, d: 1.0, a: 1.0, w: 1.0, e: 0.8, n: 1.0 };
 
     pub fn parameters(&self) -> [f64; 6] {
         [self.k, self.c, self.d, self.a, self.w, self.e]

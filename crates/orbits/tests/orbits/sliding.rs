@@ -37,12 +37,17 @@ fn a_block_begins_to_stick() {
     let multipliers = orbit.multipliers.clone().expect("no graze");
     assert_eq!(multipliers[1], [0.0, 0.0]);
     let (rate, time) = ((1.0 - c * c / 4.0).sqrt(), TAU / w);
-    let h11 = (-c * time / 2.0).exp()
-        * ((rate * time).cos() + c * (rate * time).sin() / (2.0 * rate));
+    let h11 =
+        (-c * time / 2.0).exp() * ((rate * time).cos() + c * (rate * time).sin() / (2.0 * rate));
     assert!((multipliers[0][0] - h11).abs() < 1e-2, "{multipliers:?} {h11}");
     // Far behind it the branch goes on: the orbit that sticks is followed by the system.
     let orbit = at(0.8);
     let branch = orbits.branch(&orbit, 0, [0.7, 1.2], &BranchOptions::default()).expect("it");
-    assert!(branch.points.iter().all(|it| it.multipliers.as_ref().is_some_and(|all| all[1] == [0.0; 2])));
+    assert!(
+        branch
+            .points
+            .iter()
+            .all(|it| it.multipliers.as_ref().is_some_and(|all| all[1] == [0.0; 2]))
+    );
     assert!(branch.points.iter().any(|it| it.is_admissible()));
 }
