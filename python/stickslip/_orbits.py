@@ -105,7 +105,7 @@ class Branch(Shown):
         place = self._place(component)
         return np.array([point.segments[segment].end[place] for point in self.points])
 
-    def svg(self, component: str | None = None, *, title: str = "a branch of periodic orbits") -> str:
+    def svg(self, component: str | None = None, *, title: str = "periodic orbits") -> str:
         """The picture of the branch: a component at the end of the first segment."""
         name = self._components[0] if component is None else component
         place = self._place(name)

@@ -3,16 +3,18 @@
 //! The equations of an orbit are smooth through folds and through grazes, so a branch goes through
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
-//! zero at special orbits, `locate` finds their zeros, `change` finds where the verdict changes.
+//! zero at special orbits, `locate` finds their zeros, `change` finds where the verdict
+//! changes, `doubled` goes over to orbits of twice the period.
 
 mod change;
+mod doubled;
 mod locate;
 mod point;
 mod test;
 
 use stickslip_expression::InvalidValue;
 
-use crate::equations::{Draft, Equations};
+use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
@@ -181,21 +183,19 @@ impl Orbits {
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
         let along = Along { orbits: self, equations: &equations, parameter, range: [low, high] };
         let start = along.first(&draft)?;
-        let ahead = self.half(&along, &start, options)?;
-        let back = match ahead.closed {
-            true => None,
-            false => Some(self.half(&along, &start.turned(), options)?),
-        };
+        let ahead = self.half(&along, &start, options);
+        let back = (!ahead.closed).then(|| self.half(&along, &start.turned(), options));
         Ok(joined(parameter, [low, high], start.orbit, ahead, back))
     }
 
+    /// The value of the parameter at a point, in words.
+    fn at(&self, along: &Along<'_>, point: &Point) -> String {
+        let name = &self.system.parameters[along.parameter].name;
+        format!("{name} = {:?}", along.value(&point.place))
+    }
+
     /// Follows a branch in one direction, without its first point.
-    fn half(
-        &self,
-        along: &Along<'_>,
-        start: &Point,
-        options: &BranchOptions,
-    ) -> Result<Half, OrbitError> {
+    fn half(&self, along: &Along<'_>, start: &Point, options: &BranchOptions) -> Half {
         let mut half =
             Half { points: Vec::new(), specials: Vec::new(), closed: false, objection: None };
         let mut last = start.clone();
@@ -213,21 +213,26 @@ impl Orbits {
                     continue;
                 }
                 Err(error) => {
-                    half.objection = Some(format!(
-                        "the branch breaks off at {} = {:?}: {error}",
-                        self.system.parameters[along.parameter].name,
-                        along.value(&last.place)
-                    ));
+                    let at = self.at(along, &last);
+                    half.objection = Some(format!("the branch breaks off at {at}: {error}"));
                     break;
                 }
             };
             let turn = last.tangent.dot(&next.tangent);
             half.closed = half.points.len() > 4 && along.passes(&last, &next, start);
-            let mut found = along.specials(&last, &next)?;
-            for special in &mut found {
-                special.behind = half.points.len() + 1;
+            match along.specials(&last, &next) {
+                Ok(found) => {
+                    let behind = half.points.len() + 1;
+                    let found = found.into_iter();
+                    half.specials.extend(found.map(|it| SpecialOrbit { behind, ..it }));
+                }
+                Err(error) => {
+                    half.objection = Some(format!(
+                        "what changes near {} is not located: {error}",
+                        self.at(along, &last)
+                    ));
+                }
             }
-            half.specials.extend(found);
             if half.closed {
                 break;
             }
@@ -239,7 +244,7 @@ impl Orbits {
             }
             last = next;
         }
-        Ok(half)
+        half
     }
 }
 
@@ -278,53 +283,4 @@ fn joined(
     let shifted = ahead.specials.into_iter();
     branch.specials.extend(shifted.map(|it| SpecialOrbit { behind: before + it.behind, ..it }));
     branch
-}
-
-impl Orbits {
-    /// The orbit of twice the period that begins at a flip, beside it by `aside` of the size of its
-    /// states, at the value of the parameter where it is so far away.
-    ///
-    /// # Errors
-    /// [`OrbitError`]; no orbit is found if there is no flip nearby.
-    pub fn doubled(&self, flip: &Orbit, parameter: usize, aside: f64) -> Result<Orbit, OrbitError> {
-        let accepted = aside > 0.0 && aside <= 0.5;
-        InvalidValue::check("the distance from a flip", aside, "above 0, to 0.5", accepted)?;
-        let count = self.system.parameters.len();
-        let expected = format!("the place of one of {count} parameters");
-        InvalidValue::check("the parameter", parameter, expected, parameter < count)?;
-        let one = flip.draft();
-        let value = flip.parameters[parameter].abs();
-        let size = if value > 0.0 { value } else { 1.0 };
-        let active = [(parameter, size)];
-        let single = Equations::new(&self.system, one.clone(), &active, &self.options)?;
-        let place = single.place(&one);
-        let slopes = single.at(&place)?.slopes;
-        let direction = test::null_vectors(&single.returning(&slopes, -1.0)).1;
-        let mut sides = [1.0, -1.0].map(|sign| {
-            let mut moved = place.clone();
-            let count = single.count();
-            let aside = moved.rows(0, count) + sign * aside * &direction;
-            moved.rows_mut(0, count).copy_from(&aside);
-            single.draft(&moved)
-        });
-        let [first, second] = &mut sides;
-        let joined = |one: &Draft, other: &Draft| Draft {
-            parameters: one.parameters.clone(),
-            start: one.start,
-            legs: [&one.legs[..], &other.legs].concat(),
-            states: [&one.states[..], &other.states].concat(),
-            durations: [&one.durations[..], &other.durations].concat(),
-        };
-        let (middle, double) = (joined(&one, &one), joined(first, second));
-        let equations = Equations::new(&self.system, middle.clone(), &active, &self.options)?;
-        let (from, to) = (equations.place(&middle), equations.place(&double));
-        let apart = &to - &from;
-        let length = apart.norm();
-        let away = apart / length;
-        let condition =
-            |place: &nalgebra::DVector<f64>| (away.dot(&(place - &from)) - length, away.clone());
-        let zero = crate::newton::correct(&equations, &to, Some(&condition))?;
-        let (found, evaluation) = (equations.draft(&zero.at), equations.at(&zero.at)?);
-        self.orbit(&equations, &found, &evaluation, zero.error)
-    }
 }

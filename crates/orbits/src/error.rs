@@ -20,8 +20,8 @@ pub enum OrbitError {
     },
     /// A rule of the itinerary does not act behind the guess.
     #[error(
-        "segment {segment}: rule `{rule}` does not act within {steps} steps from the guess; expected \
-         a start from which the rules of the itinerary follow each other"
+        "segment {segment}: rule `{rule}` does not act within {steps} steps from the guess; \
+         expected a start from which the rules of the itinerary follow each other"
     )]
     NoEvent {
         /// The segment.
@@ -33,8 +33,8 @@ pub enum OrbitError {
     },
     /// Nothing moves the condition of a rule: it has no place.
     #[error(
-        "segment {segment}: the condition of rule `{rule}` is zero or constant throughout; expected \
-         one that changes along the solution"
+        "segment {segment}: the condition of rule `{rule}` is zero or constant throughout; \
+         expected one that changes along the solution"
     )]
     StillGuard {
         /// The segment.
@@ -62,8 +62,8 @@ pub enum OrbitError {
     },
     /// The search leads to a point and no orbit.
     #[error(
-        "the guess leads to an orbit of length {period:e}, which is a point; expected a length above \
-         {least:e}"
+        "the guess leads to an orbit of length {period:e}, which is a point; expected a length \
+         above {least:e}"
     )]
     NoLength {
         /// The length.

@@ -5,9 +5,9 @@
 //! Python functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
-//! `tables`, `studies` (results), `hybrid`, `formulas`, `orbits`, `many`, `tape` (systems of one's own),
-//! `families` (and what they depend on), `style` (colours), `engines`, `parallel` and `failure`
-//! (what they share).
+//! `tables`, `studies` (results), `hybrid`, `formulas`, `orbits`, `many`, `tape` (systems of one's
+//! own), `families` (and what they depend on), `style` (colours), `engines`, `parallel` and
+//! `failure` (what they share).
 
 mod arrays;
 mod background;

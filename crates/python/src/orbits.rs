@@ -107,8 +107,8 @@ fn exception(error: OrbitError) -> PyErr {
     }
 }
 
-/// The picture of a branch as SVG. Points are a parameter, what is drawn over it, whether the system
-/// follows the orbit, and whether it is stable.
+/// The picture of a branch as SVG. Points are a parameter, what is drawn over it, whether the
+/// system follows the orbit, and whether it is stable.
 #[pyfunction]
 pub fn branch_picture(
     title: &str,

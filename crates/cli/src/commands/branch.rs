@@ -207,7 +207,7 @@ fn curve(found: &FoundOrbit, branch: &Branch, shown: usize) -> Svg {
 
 /// What `branch --help` says first.
 const ABOUT: &str = "\
-Follow a periodic orbit of a system of your own over a parameter, through folds and through grazes. \
+Follow a periodic orbit of a system of your own over a parameter, through folds and grazes. \
 Orbits that the system does not follow are kept and marked. Special orbits are located and named: \
 fold, flip, neimark-sacker, branch-point, grazing, grazing-sliding, adding-sliding, sliding-edge, \
 corner-collision, choice, vanishing-segment, boundary.

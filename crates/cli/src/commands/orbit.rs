@@ -20,7 +20,7 @@ use crate::shared::orbit::{FoundOrbit, GuessArguments, failure};
 /// Parts of a segment in a picture.
 const PARTS: usize = 60;
 
-/// Find a periodic orbit of a system of your own, its multipliers, and whether the system follows it
+/// Find a periodic orbit of a system of your own, and whether it is stable
 #[derive(Debug, clap::Args)]
 #[command(long_about = ABOUT, after_long_help = EXAMPLES)]
 pub struct OrbitArguments {
@@ -133,11 +133,12 @@ fn draw(found: &FoundOrbit) -> Result<Svg, Failure> {
 
 /// What `orbit --help` says first.
 const ABOUT: &str = "\
-Find a periodic orbit of a system of your own: segments from rule to rule that close. From the start, \
-the rules of --itinerary act one after another, and the search goes on from there; or a run settles.
+Find a periodic orbit of a system of your own: segments from rule to rule that close. From the \
+start, the rules of --itinerary act one after another, and the search goes on from there; or a run \
+settles.
 
-Multipliers are those of the derivative of the return through all rules. Whether the system follows the \
-orbit by itself is decided by bounds along the whole orbit.";
+Multipliers are those of the derivative of the return through all rules. Whether the system follows \
+the orbit by itself is decided by bounds along the whole orbit.";
 
 /// What `orbit --help` says last.
 const EXAMPLES: &str = "\

@@ -33,8 +33,8 @@ pub struct GuessArguments {
     #[arg(help_heading = "Guess", conflicts_with = "itinerary")]
     pub settle: Option<f64>,
 
-    /// The orbit near that of a file of `orbit`, or near the last one of a file of `branch`, instead
-    /// of --itinerary; parameters that are not set are those of the file
+    /// The orbit near that of a file of `orbit`, or near the last one of a file of `branch`,
+    /// instead of --itinerary; parameters that are not set are those of the file
     #[arg(long, value_name = "FILE.json", help_heading = "Guess")]
     #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
     pub near: Option<PathBuf>,

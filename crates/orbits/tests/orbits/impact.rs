@@ -1,5 +1,5 @@
-//! The impact oscillator x″ + cx′ + kx = A cos ωt, x ≤ d, v → −ev, whose orbits with one impact in n
-//! periods of the force have a closed form.
+//! The impact oscillator x″ + cx′ + kx = A cos ωt, x ≤ d, v → −ev, whose orbits with one impact in
+//! n periods of the force have a closed form.
 
 use std::f64::consts::{PI, TAU};
 
