@@ -4,9 +4,10 @@
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits, `locate` finds their zeros, `change` finds where the verdict
-//! changes, `doubled` goes over to orbits of twice the period.
+//! changes, `curve` follows special orbits over two parameters, `doubled` goes over to orbits of twice the period.
 
 mod change;
+pub(crate) mod curve;
 mod doubled;
 mod locate;
 mod point;

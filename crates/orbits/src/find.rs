@@ -9,7 +9,7 @@ use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after, require_short, rules_named};
 use crate::multipliers::multipliers;
 use crate::newton::correct;
-use crate::orbit::{Orbit, Segment};
+use crate::orbit::{Orbit, Segment, Verdict};
 
 /// Steps of the search for the events of a guess.
 const GUESS_STEPS: usize = 100_000;
@@ -253,7 +253,7 @@ impl Orbits {
     pub(crate) fn solve(&self, draft: Draft) -> Result<Orbit, OrbitError> {
         let latest = draft.start.abs().max(draft.period().abs());
         let equations = Equations::new(&self.system, draft.clone(), &[], &self.options)?;
-        let zero = correct(&equations, &equations.place(&draft), None)?;
+        let zero = correct(&equations, &equations.place(&draft), &[])?;
         let (found, evaluation) = (equations.draft(&zero.at), equations.at(&zero.at)?);
         let (period, least) = (found.period(), LEAST_PERIOD * latest);
         if !(period > least) {
@@ -262,7 +262,7 @@ impl Orbits {
         self.orbit(&equations, &found, &evaluation, zero.error)
     }
 
-    /// The orbit at a solution of its equations.
+    /// The orbit at a solution of its equations, with its verdict.
     pub(crate) fn orbit(
         &self,
         equations: &Equations,
@@ -270,13 +270,29 @@ impl Orbits {
         evaluation: &Evaluation,
         error: f64,
     ) -> Result<Orbit, OrbitError> {
-        let ends = &evaluation.ends;
-        if !equations.repeats(draft, ends) {
+        if !equations.repeats(draft, &evaluation.ends) {
             let expected = "a clock whose period is that of what depends on the time";
             let found = format!("repeats after {:?}, and equations do not", draft.period());
             let found = GivenValue::Phrase(found.into());
             return Err(InvalidValue::new("itinerary", found, expected).into());
         }
+        self.judged(equations, &Self::sketched(equations, draft, evaluation, error))
+    }
+
+    /// The same orbit with its verdict.
+    pub(crate) fn judged(&self, equations: &Equations, orbit: &Orbit) -> Result<Orbit, OrbitError> {
+        let verdict = verdict(&self.halfway, equations, &orbit.draft(), &self.options)?;
+        Ok(Orbit { verdict, ..orbit.clone() })
+    }
+
+    /// The orbit at a solution of its equations, without verdict.
+    pub(crate) fn sketched(
+        equations: &Equations,
+        draft: &Draft,
+        evaluation: &Evaluation,
+        error: f64,
+    ) -> Orbit {
+        let ends = &evaluation.ends;
         let monodromy = equations.monodromy(ends);
         let segments = draft.legs.iter().enumerate().map(|(i, &leg)| Segment {
             leg,
@@ -285,15 +301,15 @@ impl Orbits {
             end: ends[i].flown.state.clone(),
             rate: ends[i].event.rate(),
         });
-        Ok(Orbit {
+        Orbit {
             parameters: draft.parameters.clone(),
             start: draft.start,
             segments: segments.collect(),
             period: draft.period(),
             multipliers: monodromy.and_then(|(it, trivial)| multipliers(&it, trivial.as_ref())),
-            verdict: verdict(&self.halfway, equations, draft, &self.options)?,
+            verdict: Verdict::Undecided("not looked at".to_owned()),
             error,
-        })
+        }
     }
 }
 

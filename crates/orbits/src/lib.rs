@@ -58,6 +58,7 @@ mod multipliers;
 mod newton;
 mod orbit;
 
+pub use branch::curve::{Meeting, SpecialCurve};
 pub use branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
 pub use error::OrbitError;
 pub use find::{Guess, Orbits};

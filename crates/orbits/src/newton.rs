@@ -21,7 +21,7 @@ const LIMITS: Limits = Limits {
 /// A further condition, which is 0: its value and its derivatives at a place.
 pub(crate) type Condition<'a> = &'a dyn Fn(&DVector<f64>) -> (f64, DVector<f64>);
 
-/// The place near `start` where the equations hold, and a further condition for each active
+/// The place near `start` where the equations hold, and further conditions, one for each active
 /// parameter.
 ///
 /// # Errors
@@ -29,12 +29,12 @@ pub(crate) type Condition<'a> = &'a dyn Fn(&DVector<f64>) -> (f64, DVector<f64>)
 pub(crate) fn correct(
     equations: &Equations,
     start: &DVector<f64>,
-    condition: Option<Condition<'_>>,
+    conditions: &[Condition<'_>],
 ) -> Result<Zero<Dyn>, OrbitError> {
     let mut failed = None;
     let found = solve(start, &LIMITS, |place, _| {
         match equations.at(place) {
-            Ok(evaluation) => Ok::<_, OrbitError>(Some(all(evaluation, place, condition))),
+            Ok(evaluation) => Ok::<_, OrbitError>(Some(all(evaluation, place, conditions))),
             // Some places on the way have no flow: half of the way is taken back.
             Err(error @ OrbitError::Run { .. }) => {
                 failed = Some(error);
@@ -67,14 +67,15 @@ pub(crate) fn correct(
 fn all(
     Evaluation { values, slopes, .. }: Evaluation,
     place: &DVector<f64>,
-    condition: Option<Condition<'_>>,
+    conditions: &[Condition<'_>],
 ) -> (DVector<f64>, Option<DMatrix<f64>>) {
-    let Some(condition) = condition else { return (values, Some(slopes)) };
-    let (value, by) = condition(place);
-    let count = values.len();
-    let mut values = values.insert_row(count, 0.0);
-    values[count] = value;
-    let mut slopes = slopes.insert_row(count, 0.0);
-    slopes.row_mut(count).copy_from(&by.transpose());
+    let (count, more) = (values.len(), conditions.len());
+    let mut values = values.insert_rows(count, more, 0.0);
+    let mut slopes = slopes.insert_rows(count, more, 0.0);
+    for (k, condition) in conditions.iter().enumerate() {
+        let (value, by) = condition(place);
+        values[count + k] = value;
+        slopes.row_mut(count + k).copy_from(&by.transpose());
+    }
     (values, Some(slopes))
 }

@@ -147,7 +147,7 @@ impl Along<'_> {
     }
 
     /// A function that is positive where there is no obstacle, if it has a value.
-    fn margin(&self, margin: &Margin, point: &Point) -> Option<f64> {
+    pub fn margin(&self, margin: &Margin, point: &Point) -> Option<f64> {
         let orbit = &point.orbit;
         match *margin {
             Margin::Choice { segment } => Some(point.evaluation.ends[segment].event.choice),
@@ -223,7 +223,7 @@ impl Along<'_> {
 }
 
 /// A function along a branch that changes its sign where an obstacle begins.
-enum Margin {
+pub(super) enum Margin {
     /// The least extremum of a rule's condition inside a segment.
     Inner { segment: usize, rule: usize },
     /// The condition at the end of a segment.

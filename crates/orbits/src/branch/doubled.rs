@@ -52,7 +52,7 @@ impl Orbits {
         let length = apart.norm();
         let away = apart / length;
         let condition = |place: &DVector<f64>| (away.dot(&(place - &from)) - length, away.clone());
-        let zero = correct(&equations, &to, Some(&condition))?;
+        let zero = correct(&equations, &to, &[&condition])?;
         let (found, evaluation) = (equations.draft(&zero.at), equations.at(&zero.at)?);
         self.orbit(&equations, &found, &evaluation, zero.error)
     }

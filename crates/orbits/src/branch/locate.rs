@@ -47,43 +47,52 @@ impl Along<'_> {
         SpecialOrbit { kind, value, behind: 0, segment, rule, orbit: point.orbit }
     }
 
-    /// Where a function changes its sign from `one` at a point to `other` ahead by a length: by
-    /// false position in the manner of Illinois. `None` if the function ceases between.
+    /// Where a function changes its sign from `one` at a point to `other` ahead by a length.
     pub(super) fn zero(
         &self,
         from: &Point,
-        (length, one, other): (f64, f64, f64),
+        signs: (f64, f64, f64),
         function: impl Fn(&Point) -> Option<f64>,
     ) -> Result<Option<(f64, Point)>, OrbitError> {
-        let (mut low, mut high) = ((0.0, one), (length, other));
-        let mut side = 0;
-        let mut last = None;
-        for _ in 0..ROUNDS {
-            let part = low.1 / (low.1 - high.1);
-            let part = if part > 0.0 && part < 1.0 { part } else { 0.5 };
-            let at = low.0 + part * (high.0 - low.0);
+        zero(signs, |at| {
             let point = self.ahead(from, at)?;
-            let Some(value) = function(&point) else { return Ok(None) };
-            let before = last.as_ref().map(|(at, _): &(f64, Point)| *at);
-            last = Some((at, point));
-            let stays = before.is_some_and(|before| (at - before).abs() <= NARROW * length);
-            if value == 0.0 || stays || (high.0 - low.0).abs() <= NARROW * length {
-                break;
-            }
-            if (value < 0.0) == (low.1 < 0.0) {
-                low = (at, value);
-                if side == -1 {
-                    high.1 *= 0.5;
-                }
-                side = -1;
-            } else {
-                high = (at, value);
-                if side == 1 {
-                    low.1 *= 0.5;
-                }
-                side = 1;
-            }
-        }
-        Ok(last)
+            Ok(function(&point).map(|value| (value, point)))
+        })
     }
+}
+
+/// Where a function changes its sign from `one` to `other` within a length, with what it is computed
+/// from: by false position in the manner of Illinois. `None` if the function ceases between.
+pub(super) fn zero<T>(
+    (length, one, other): (f64, f64, f64),
+    mut function: impl FnMut(f64) -> Result<Option<(f64, T)>, OrbitError>,
+) -> Result<Option<(f64, T)>, OrbitError> {
+    let (mut low, mut high) = ((0.0, one), (length, other));
+    let mut side = 0;
+    let mut last: Option<(f64, T)> = None;
+    for _ in 0..ROUNDS {
+        let part = low.1 / (low.1 - high.1);
+        let part = if part > 0.0 && part < 1.0 { part } else { 0.5 };
+        let at = low.0 + part * (high.0 - low.0);
+        let Some((value, found)) = function(at)? else { return Ok(None) };
+        let before = last.replace((at, found)).map(|(at, _)| at);
+        let stays = before.is_some_and(|before| (at - before).abs() <= NARROW * length);
+        if value == 0.0 || stays || (high.0 - low.0).abs() <= NARROW * length {
+            break;
+        }
+        if (value < 0.0) == (low.1 < 0.0) {
+            low = (at, value);
+            if side == -1 {
+                high.1 *= 0.5;
+            }
+            side = -1;
+        } else {
+            high = (at, value);
+            if side == 1 {
+                low.1 *= 0.5;
+            }
+            side = 1;
+        }
+    }
+    Ok(last)
 }

@@ -68,7 +68,15 @@ impl Along<'_> {
         };
         let mut start = near.clone();
         start[last] = wanted;
-        correct(self.equations, &start, Some(&condition)).map(|zero| zero.at)
+        correct(self.equations, &start, &[&condition]).map(|zero| zero.at)
+    }
+
+    /// A place without direction and verdict.
+    pub fn sketch(&self, place: DVector<f64>) -> Result<Point, OrbitError> {
+        let evaluation = self.equations.at(&place)?;
+        let draft = self.equations.draft(&place);
+        let orbit = Orbits::sketched(self.equations, &draft, &evaluation, 1e-13);
+        Ok(Point { place, tangent: DVector::zeros(0), evaluation, orbit })
     }
 
     /// The point at a place of the branch, which goes on about in a direction.
@@ -89,7 +97,7 @@ impl Along<'_> {
         let start = &from.place + length * &from.tangent;
         let condition =
             |place: &DVector<f64>| (from.tangent.dot(&(place - &start)), from.tangent.clone());
-        let zero = correct(self.equations, &start, Some(&condition))?;
+        let zero = correct(self.equations, &start, &[&condition])?;
         self.point(zero.at, &from.tangent)
     }
 

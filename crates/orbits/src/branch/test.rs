@@ -14,6 +14,8 @@ pub(super) enum Test {
     Fold,
     /// The derivatives for solutions that come back with the other sign, bordered.
     Flip(Borders),
+    /// The derivatives for solutions that come back as they are, bordered.
+    Singular(Borders),
     /// The derivatives along the branch, bordered.
     BranchPoint(Borders),
     /// The size of complex multipliers, less 1.
@@ -30,7 +32,7 @@ pub(super) struct Borders {
 }
 
 impl Borders {
-    fn of(matrix: &DMatrix<f64>) -> Self {
+    pub fn of(matrix: &DMatrix<f64>) -> Self {
         let (column, row) = null_vectors(matrix);
         Self { column, row }
     }
@@ -77,6 +79,9 @@ impl Test {
             Self::Flip(borders) => {
                 borders.value(&along.equations.returning(&point.evaluation.slopes, -1.0))
             }
+            Self::Singular(borders) => {
+                borders.value(&along.equations.returning(&point.evaluation.slopes, 1.0))
+            }
             Self::BranchPoint(borders) => borders.value(&bordered_by_tangent(point)),
             Self::NeimarkSacker => complex_size(point),
             Self::Rate(segment) => {
@@ -99,7 +104,7 @@ impl Test {
                 .is_none_or(|all| all.iter().any(|it| (it[0] - re).hypot(it[1]) < NEAR))
         };
         match self {
-            Self::Fold => has(1.0).then_some((SpecialKind::Fold, None)),
+            Self::Fold | Self::Singular(_) => has(1.0).then_some((SpecialKind::Fold, None)),
             Self::Flip(_) => has(-1.0).then_some((SpecialKind::Flip, None)),
             Self::BranchPoint(_) => has(1.0).then_some((SpecialKind::BranchPoint, None)),
             Self::NeimarkSacker => {

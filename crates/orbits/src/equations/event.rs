@@ -142,6 +142,19 @@ impl Event {
         })
     }
 
+    /// Whether the condition only touches zero.
+    pub fn grazes(&self) -> bool {
+        self.rate().abs() <= LIKE * self.rate_size()
+    }
+
+    /// What the rate of the condition is made of.
+    fn rate_size(&self) -> f64 {
+        let parts = (0..self.slopes.len()).map(|k| (self.guard_by[k] * self.slopes[k]).abs());
+        let size = parts.fold(self.guard_by[self.slopes.len()].abs(), f64::max);
+        // At a graze of one part, all of it vanishes: then it is as large as the slopes.
+        size.max(self.slopes.amax() * self.guard_by.rows(0, self.slopes.len()).amax())
+    }
+
     /// Whether the mode that follows slides along what was reached: there the condition stays zero.
     pub fn slides_behind(&self) -> bool {
         let n = self.slopes.len();

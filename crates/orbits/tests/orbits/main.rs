@@ -3,6 +3,7 @@
 mod ball;
 mod branches;
 mod buck;
+mod curves;
 mod impact;
 mod refused;
 mod sliding;
