@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from stickslip._explorer import Explorer, explore
     from stickslip._laws import NamedLaw, laws
     from stickslip._native import ComputationError
-    from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialOrbit
+    from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialCurve, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
     from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
@@ -144,6 +144,7 @@ __all__ = [
     "Sensitivities",
     "Sensitivity",
     "Solution",
+    "SpecialCurve",
     "SpecialOrbit",
     "Sphere",
     "Stack",
@@ -202,7 +203,7 @@ _MODULES = {
     "_explorer": "Explorer explore",
     "_laws": "NamedLaw laws",
     "_native": "ComputationError",
-    "_orbits": "Branch Orbit OrbitSegment SpecialOrbit",
+    "_orbits": "Branch Orbit OrbitSegment SpecialCurve SpecialOrbit",
     "_solutions": "DenseOutput Solution",
     "_systems": "Guard HybridSystem Mode",
     "atlases": "Atlas AtlasWarning Boundary Located Region Vertex trace",

@@ -141,6 +141,13 @@ class OrbitSystem:
         longest_step: float,
         most_points: int,
     ) -> str: ...
+    def curve(
+        self,
+        special: str,
+        parameters: list[int],
+        window: list[list[float]],
+        longest_step: float,
+    ) -> str: ...
     def course(self, orbit: str, parts: int) -> list[tuple[float, list[float]]]: ...
 
 def branch_picture(

@@ -76,6 +76,27 @@ class SpecialOrbit(Shown):
     segment: int | None
     rule: str | None
     orbit: Orbit
+    _record: dict[str, Any] = field(repr=False)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SpecialCurve(Shown):
+    """Special orbits of one kind over two parameters, in the order of the curve. `meetings` are
+    orbits at which something else changes too, as kind and orbit.
+    """
+
+    kind: str
+    parameters: tuple[str, str]
+    points: list[Orbit]
+    meetings: list[tuple[str, Orbit]]
+    closed: bool
+    objection: str | None
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        """The values of both parameters, shape (2, n)."""
+        rows = [[point.parameters[name] for point in self.points] for name in self.parameters]
+        return np.array(rows)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -192,7 +213,16 @@ def branch(
     )
     found = json.loads(text)
     specials = [
-        SpecialOrbit(**{**it, "orbit": _read(system, it["orbit"])}) for it in found["specials"]
+        SpecialOrbit(
+            kind=it["kind"],
+            value=it["value"],
+            behind=it["behind"],
+            segment=it["segment"],
+            rule=it["rule"],
+            orbit=_read(system, it["orbit"]),
+            _record=it,
+        )
+        for it in found["specials"]
     ]
     return Branch(
         parameter=parameter,
@@ -202,6 +232,30 @@ def branch(
         closed=found["closed"],
         objection=found["objection"],
         _components=found["components"],
+    )
+
+
+def curve(
+    system: FormulaSystem,
+    special: SpecialOrbit,
+    parameters: tuple[str, str],
+    x: tuple[float, float],
+    y: tuple[float, float],
+    longest_step: float,
+) -> SpecialCurve:
+    """See `FormulaSystem.curve`."""
+    places = [_parameter(system, name) for name in parameters]
+    window = [[_number(end, "interval") for end in interval] for interval in (x, y)]
+    step = _number(longest_step, "longest_step")
+    text = system._orbits.curve(json.dumps(special._record), places, window, step)
+    found = json.loads(text)
+    return SpecialCurve(
+        kind=found["kind"],
+        parameters=(parameters[0], parameters[1]),
+        points=[_read(system, it) for it in found["points"]],
+        meetings=[(it["kind"], _read(system, it["orbit"])) for it in found["meetings"]],
+        closed=found["closed"],
+        objection=found["objection"],
     )
 
 

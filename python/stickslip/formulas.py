@@ -20,7 +20,7 @@ from stickslip import _native, _orbits
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
-from stickslip._orbits import Branch, Orbit
+from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._solutions import Names, Solution, event_array, solution_of, with_variables
 from stickslip._progress import Progress, keeping, reported
@@ -235,7 +235,7 @@ class FormulaSystem:
         >>> import stickslip
         >>> ball = stickslip.system(\"\"\"
         ... parameter a = 0.02, r = 0.7
-        ... state x = 0.014, v = 0.5, phase = 0.8
+        ... state x = 0.015, v = 0.5, phase = 0.8
         ... table = a*sin(phase)
         ... x' = v
         ... v' = -1
@@ -252,6 +252,24 @@ class FormulaSystem:
         [('flip', 0.029654967)]
         """
         return _orbits.branch(self, orbit, parameter, interval, longest_step, most_points)
+
+    def curve(
+        self,
+        special: SpecialOrbit,
+        parameters: tuple[str, str],
+        x: tuple[float, float],
+        y: tuple[float, float],
+        *,
+        longest_step: float = 0.05,
+    ) -> SpecialCurve:
+        """The curve of a special orbit of a branch over two parameters, in the window of the
+        intervals x and y, in both directions. `meetings` are orbits at which something else changes
+        too: on a curve of neimark-sacker, fold is the resonance 1:1 and flip 1:2.
+
+        Raises ValueError if a name or a value is wrong, or for the kinds branch-point and boundary,
+        and ComputationError if the curve does not begin.
+        """
+        return _orbits.curve(self, special, parameters, x, y, longest_step)
 
     def doubled(self, orbit: Orbit, parameter: str, *, aside: float = 0.05) -> Orbit:
         """The orbit of twice the period that begins at a flip: beside it by `aside` of the size of

@@ -12,7 +12,7 @@ from stickslip import ComputationError
 
 BALL = """
 parameter a = 0.02, r = 0.7
-state x = 0.014, v = 0.5, phase = 0.8
+state x = 0.015, v = 0.5, phase = 0.8
 table = a*sin(phase)
 x' = v
 v' = -1
@@ -57,6 +57,13 @@ def test_a_branch_has_its_special_orbits() -> None:
     assert branch.values.min() >= 0.014043083
     assert branch.ends("v", 1).shape == branch.values.shape == branch.admissible.shape
     assert branch.svg("v").startswith("<svg")
+    curve = ball.curve(special["flip"], ("r", "a"), (0.6, 0.8), (0.01, 0.06))
+    r, a = curve.values
+    # Aω² sin φ = 2(1 + r²)/(1 + r)², with cos φ = (1 − r)/(2(1 + r)Aω).
+    w = 2 * math.pi
+    cosine, sine = (1 - r) / (2 * (1 + r)) / w, 2 * (1 + r**2) / (1 + r) ** 2 / w**2
+    assert np.abs(a - np.hypot(cosine, sine)).max() < 1e-11 and a.size > 5
+    assert {round(float(r[0]), 12), round(float(r[-1]), 12)} == {0.6, 0.8}
     doubled = ball.doubled(special["flip"].orbit, "a")
     assert abs(doubled.period - 2.0) < 1e-12 and doubled.stable
     assert len(doubled.segments) == 4

@@ -7,6 +7,7 @@ mod branch;
 mod collide;
 mod completions;
 mod converge;
+mod curve;
 mod explore;
 mod fit;
 mod impact;
@@ -51,6 +52,7 @@ pub enum Command {
     System(system::SystemArguments),
     Orbit(orbit::OrbitArguments),
     Branch(branch::BranchArguments),
+    Curve(curve::CurveArguments),
     Trace(trace::TraceArguments),
     Stack(stack::StackArguments),
     Locate(locate::LocateArguments),
@@ -81,6 +83,7 @@ impl Command {
             Self::System(arguments) => system::run(arguments),
             Self::Orbit(arguments) => orbit::run(arguments),
             Self::Branch(arguments) => branch::run(arguments),
+            Self::Curve(arguments) => curve::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),
             Self::Stack(arguments) => stack::run(arguments),
             Self::Locate(arguments) => locate::run(arguments),

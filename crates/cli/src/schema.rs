@@ -15,7 +15,7 @@ pub const REPORT: &str = "stickslip.report/1";
 pub const RUN: &str = "stickslip.run/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 16] = [
+pub const ALL: [&str; 17] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
@@ -32,4 +32,5 @@ pub const ALL: [&str; 16] = [
     RUN,
     orbits::ORBIT,
     orbits::BRANCH,
+    orbits::CURVE,
 ];

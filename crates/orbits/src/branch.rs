@@ -220,7 +220,7 @@ impl Orbits {
                 }
             };
             let turn = last.tangent.dot(&next.tangent);
-            half.closed = half.points.len() > 4 && along.passes(&last, &next, start);
+            half.closed = half.points.len() > 4 && last.passes(&next, start);
             match along.specials(&last, &next) {
                 Ok(found) => {
                     let behind = half.points.len() + 1;

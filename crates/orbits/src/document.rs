@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use stickslip_expression::{InvalidValue, System};
 
-use crate::branch::{Branch, SpecialKind};
+use crate::branch::curve::{Meeting, SpecialCurve};
+use crate::branch::{Branch, SpecialKind, SpecialOrbit};
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::itinerary::Leg;
@@ -15,6 +16,8 @@ use crate::orbit::{Obstacle, Orbit, Segment, Verdict};
 pub const ORBIT: &str = "stickslip.orbit/1";
 /// The name of the layout of a branch, with its version.
 pub const BRANCH: &str = "stickslip.orbit-branch/1";
+/// The name of the layout of a curve of special orbits, with its version.
+pub const CURVE: &str = "stickslip.orbit-curve/1";
 
 /// An orbit with names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -109,6 +112,8 @@ pub struct SpecialRecord {
     pub segment: Option<usize>,
     /// The name of the rule.
     pub rule: Option<String>,
+    /// Its place in the mode of the segment.
+    pub place: Option<usize>,
     /// The orbit.
     pub orbit: OrbitRecord,
 }
@@ -179,6 +184,12 @@ impl OrbitRecord {
     /// # Errors
     /// [`OrbitError`]: the record is not of this system, or there is no such orbit.
     pub fn orbit(&self, orbits: &Orbits) -> Result<Orbit, OrbitError> {
+        let written = self.read(orbits)?;
+        orbits.continued(&written, &written.parameters)
+    }
+
+    /// The orbit as it is written.
+    fn read(&self, orbits: &Orbits) -> Result<Orbit, InvalidValue> {
         let system = orbits.system();
         let mode = |name: &str| {
             let place = system.modes.iter().position(|it| it.name == *name);
@@ -204,16 +215,15 @@ impl OrbitRecord {
             segments.push(Segment { leg, state, duration: own.duration, end, rate: own.rate });
         }
         InvalidValue::check("segments", segments.len(), "at least 1", !segments.is_empty())?;
-        let written = Orbit {
-            parameters: parameters.clone(),
+        Ok(Orbit {
+            parameters,
             start: self.start,
             segments,
             period: self.period,
             multipliers: None,
-            verdict: Verdict::Admissible,
+            verdict: Verdict::Undecided("as it was written".to_owned()),
             error: self.error,
-        };
-        orbits.continued(&written, &parameters)
+        })
     }
 }
 
@@ -236,7 +246,7 @@ impl BranchDocument {
     #[must_use]
     pub fn new(orbits: &Orbits, name: &str, branch: &Branch) -> Self {
         let system = orbits.system();
-        let special = |it: &crate::branch::SpecialOrbit| {
+        let special = |it: &SpecialOrbit| {
             let mode = it.segment.map(|segment| it.orbit.segments[segment].leg.mode);
             let rule = mode.zip(it.rule);
             SpecialRecord {
@@ -244,6 +254,7 @@ impl BranchDocument {
                 value: it.value,
                 behind: it.behind,
                 segment: it.segment,
+                place: it.rule,
                 rule: rule.map(|(mode, rule)| system.modes[mode].rules[rule].name(rule)),
                 orbit: OrbitRecord::new(system, &it.orbit),
             }
@@ -259,5 +270,89 @@ impl BranchDocument {
             closed: branch.closed,
             objection: branch.objection.clone(),
         }
+    }
+}
+
+/// A document of a curve of special orbits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveDocument {
+    /// The name of the layout, [`CURVE`].
+    pub schema: String,
+    /// The name of the system.
+    pub system: String,
+    /// The names of the components of states.
+    pub components: Vec<String>,
+    /// What changes along the curve.
+    pub kind: SpecialKind,
+    /// The parameters.
+    pub parameters: [String; 2],
+    /// The window, an interval for each parameter.
+    pub window: [[f64; 2]; 2],
+    /// The orbits, in the order of the curve.
+    pub points: Vec<OrbitRecord>,
+    /// Orbits at which something else changes too.
+    pub meetings: Vec<MeetingRecord>,
+    /// Whether the curve comes back to its start.
+    pub closed: bool,
+    /// What speaks against the curve.
+    pub objection: Option<String>,
+}
+
+/// An orbit that is special twice, with names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeetingRecord {
+    /// What changes besides.
+    pub kind: SpecialKind,
+    /// The segment at which it happens.
+    pub segment: Option<usize>,
+    /// The number of points before it.
+    pub behind: usize,
+    /// The orbit.
+    pub orbit: OrbitRecord,
+}
+
+impl CurveDocument {
+    /// The document of a curve. `name` is that of the system.
+    #[must_use]
+    pub fn new(orbits: &Orbits, name: &str, curve: &SpecialCurve) -> Self {
+        let system = orbits.system();
+        let meeting = |it: &Meeting| MeetingRecord {
+            kind: it.kind,
+            segment: it.segment,
+            behind: it.behind,
+            orbit: OrbitRecord::new(system, &it.orbit),
+        };
+        Self {
+            schema: CURVE.to_owned(),
+            system: name.to_owned(),
+            components: system.components.iter().map(|it| it.name.clone()).collect(),
+            kind: curve.kind,
+            parameters: curve.parameters.map(|place| system.parameters[place].name.clone()),
+            window: curve.window,
+            points: curve.points.iter().map(|it| OrbitRecord::new(system, it)).collect(),
+            meetings: curve.meetings.iter().map(meeting).collect(),
+            closed: curve.closed,
+            objection: curve.objection.clone(),
+        }
+    }
+}
+
+impl SpecialRecord {
+    /// The special orbit of a system. Its orbit is solved for again, as one among others.
+    ///
+    /// # Errors
+    /// [`OrbitError`]: the record is not of this system, or there is no such orbit.
+    pub fn special(&self, orbits: &Orbits) -> Result<SpecialOrbit, OrbitError> {
+        let orbit = self.orbit.read(orbits)?;
+        let segments = orbit.segments.len();
+        let expected = format!("one of {segments} segments");
+        let segment = self.segment.unwrap_or(0);
+        InvalidValue::check("segment", segment, expected, segment < segments)?;
+        let rules = orbits.system().modes[orbit.segments[segment].leg.mode].rules.len();
+        let rule = self.place.unwrap_or(0);
+        let expected = format!("one of {rules} rules");
+        InvalidValue::check("place", rule, expected, self.place.is_none() || rule < rules)?;
+        let Self { kind, value, behind, segment, place, .. } = *self;
+        Ok(SpecialOrbit { kind, value, behind, segment, rule: place, orbit })
     }
 }

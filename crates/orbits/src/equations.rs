@@ -315,7 +315,7 @@ impl Equations {
         for End { flown, event } in ends {
             let by = event.guard_by.rows(0, n).transpose();
             let reset = event.after_by.columns(0, n);
-            let jump = &event.slopes_after - &reset * &event.slopes - event.after_by.column(n);
+            let jump = &event.slopes_after - reset * &event.slopes - event.after_by.column(n);
             let mut saltation = reset.into_owned();
             if by.amax() > 0.0 {
                 saltation += jump * by / event.rate();
@@ -458,10 +458,8 @@ fn clock(
         let expected = "a rule `every …` among the itinerary, whose period is that of what depends \
                         on the time";
         let found = GivenValue::Phrase("has no clock, and equations depend on the time".into());
-        return match explicit {
-            true => Err(InvalidValue::new("itinerary", found, expected).into()),
-            false => Ok(None),
-        };
+        InvalidValue::check("itinerary", found, expected, !explicit)?;
+        return Ok(None);
     };
     let mut formulas = vec![period];
     formulas.extend(by_each(graph, period, 0, active).into_iter().skip(1));

@@ -75,7 +75,7 @@ impl Orbits {
     /// # Errors
     /// [`OrbitError`].
     pub fn find(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Orbit, OrbitError> {
-        self.solve(self.followed(parameters, guess)?)
+        self.solve(&self.followed(parameters, guess)?)
     }
 
     /// The orbit to which a run from the start of the guess has settled after a time: its last
@@ -127,7 +127,7 @@ impl Orbits {
         let m = (1..last.len()).find(repeats).ok_or(not_settled)?;
         let round = &last[last.len() - m - 1..];
         let legs = round[1..].iter().map(|it| Leg { mode: it.from, rule: it.guard, next: it.to });
-        self.solve(Draft {
+        self.solve(&Draft {
             parameters: parameters.to_vec(),
             start: round[0].s,
             legs: legs.collect(),
@@ -142,7 +142,7 @@ impl Orbits {
     /// [`OrbitError`].
     pub fn continued(&self, orbit: &Orbit, parameters: &[f64]) -> Result<Orbit, OrbitError> {
         self.compiled.with(parameters)?;
-        self.solve(Draft { parameters: parameters.to_vec(), ..orbit.draft() })
+        self.solve(&Draft { parameters: parameters.to_vec(), ..orbit.draft() })
     }
 
     /// Times and states along an orbit for a smooth curve, each segment in so many parts.
@@ -250,13 +250,13 @@ impl Orbits {
     }
 
     /// The orbit near a draft.
-    pub(crate) fn solve(&self, draft: Draft) -> Result<Orbit, OrbitError> {
+    pub(crate) fn solve(&self, draft: &Draft) -> Result<Orbit, OrbitError> {
         let latest = draft.start.abs().max(draft.period().abs());
         let equations = Equations::new(&self.system, draft.clone(), &[], &self.options)?;
-        let zero = correct(&equations, &equations.place(&draft), &[])?;
+        let zero = correct(&equations, &equations.place(draft), &[])?;
         let (found, evaluation) = (equations.draft(&zero.at), equations.at(&zero.at)?);
         let (period, least) = (found.period(), LEAST_PERIOD * latest);
-        if !(period > least) {
+        if period.is_nan() || period <= least {
             return Err(OrbitError::NoLength { period, least });
         }
         self.orbit(&equations, &found, &evaluation, zero.error)

@@ -2,7 +2,9 @@
 
 use pyo3::prelude::*;
 use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
-use stickslip_orbits::document::{BranchDocument, OrbitDocument, OrbitRecord};
+use stickslip_orbits::document::{
+    BranchDocument, CurveDocument, OrbitDocument, OrbitRecord, SpecialRecord,
+};
 use stickslip_orbits::{BranchOptions, Guess, Orbit, OrbitError, Orbits};
 
 use crate::failure::{bad_input, failed};
@@ -78,6 +80,24 @@ impl OrbitSystem {
         let options = BranchOptions { first_step, longest_step, most_points, ..usual };
         let found = py.detach(|| self.0.branch(&orbit, parameter, [low, high], &options));
         let document = BranchDocument::new(&self.0, "", &found.map_err(exception)?);
+        serde_json::to_string(&document).map_err(failed)
+    }
+
+    fn curve(
+        &self,
+        py: Python<'_>,
+        special: &str,
+        parameters: [usize; 2],
+        window: [[f64; 2]; 2],
+        longest_step: f64,
+    ) -> PyResult<String> {
+        let record: SpecialRecord = serde_json::from_str(special).map_err(bad_input)?;
+        let special = record.special(&self.0).map_err(exception)?;
+        let usual = BranchOptions::default();
+        let first_step = usual.first_step.min(longest_step);
+        let options = BranchOptions { first_step, longest_step, ..usual };
+        let found = py.detach(|| self.0.curve(&special, parameters, window, &options));
+        let document = CurveDocument::new(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
     }
 

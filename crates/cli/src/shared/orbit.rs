@@ -67,7 +67,7 @@ struct Written {
 }
 
 /// Largest number of bytes of a file.
-const MOST_BYTES: u64 = 1 << 30;
+pub const MOST_BYTES: u64 = 1 << 30;
 
 /// An orbit that was found, with its system.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::{Workspace, rows};
 
-const BALL: &str = "parameter a = 0.02, r = 0.7\nstate x = 0.014, v = 0.5, phase = 0.8\n\
+const BALL: &str = "parameter a = 0.02, r = 0.7\nstate x = 0.015, v = 0.5, phase = 0.8\n\
                     table = a*sin(phase)\nx' = v\nv' = -1\nphase' = 2*pi\n\
                     when x < table \"bounce\"\n  x := table\n  v := (1 + r)*table' - r*v\n\
                     when phase > 2*pi \"period\"\n  phase := phase - 2*pi\nend = 20\n";
@@ -56,6 +56,27 @@ fn a_branch_is_followed_and_written() {
     assert_eq!(table[0][..6].join(","), "a,special,period,stable,followed,multiplier");
     let points = written["points"].as_array().unwrap().len();
     assert_eq!(table.len(), 1 + points + specials.len());
+    // The flip over two parameters: Aω² sin φ = 2(1 + r²)/(1 + r)².
+    let curve = directory.run(
+        "curve ball.slip --branch branch.json --kind flip --x r=0.6:0.8 --y a=0.01:0.06 \
+         --out curve.json --plot curve.svg",
+    );
+    assert_eq!(curve.code, 0, "{}", curve.stderr);
+    let curve: Value = serde_json::from_str(&directory.read("curve.json")).unwrap();
+    assert_eq!(curve["schema"], "stickslip.orbit-curve/1");
+    let points = curve["points"].as_array().unwrap();
+    assert!(points.len() > 5);
+    for point in points {
+        let [r, a] = ["r", "a"].map(|name| point["parameters"][name].as_f64().unwrap());
+        let w = std::f64::consts::TAU;
+        let cos = (1.0 - r) / (2.0 * (1.0 + r)) / w;
+        let sin = 2.0 * (1.0 + r * r) / (1.0 + r).powi(2) / (w * w);
+        assert!((a - cos.hypot(sin)).abs() < 1e-11, "{r} {a}");
+    }
+    let unknown = directory
+        .run("curve ball.slip --branch branch.json --kind graze --x r=0.6:0.8 --y a=0.01:0.06");
+    assert_eq!(unknown.code, 2, "{}", unknown.stderr);
+    assert!(unknown.stderr.contains("--kind graze: expected one of the branch"));
     // It goes on from its last orbit.
     let near = directory.run("orbit ball.slip --near branch.json --set a=0.048 --format json");
     assert_eq!(near.code, 0, "{}", near.stderr);

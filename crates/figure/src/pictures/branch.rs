@@ -48,9 +48,12 @@ pub enum Stretch {
     Unstable,
     /// The system does not follow the orbits.
     Virtual,
+    /// The orbits are special ones, over two parameters.
+    Special,
 }
 
-const STRETCHES: [(Stretch, &str, Stroke); 3] = [
+const STRETCHES: [(Stretch, &str, Stroke); 4] = [
+    (Stretch::Special, "", Stroke::full(BLUE, 2.0)),
     (Stretch::Virtual, "virtual", Stroke { colour: "#888888", width: 1.4, dashes: "2 3" }),
     (Stretch::Unstable, "unstable", Stroke { colour: VERMILION, width: 2.0, dashes: "7 3" }),
     (Stretch::Stable, "stable", Stroke::full(BLUE, 2.4)),

@@ -42,7 +42,7 @@ impl Along<'_> {
                 let virtual_side = if begins { &high_point } else { &low_point };
                 if round == COARSE
                     && let Some(special) =
-                        self.named(from, [(low, &low_point), (high, &high_point)], virtual_side)?
+                        self.named(from, [(low, &low_point), (high, &high_point)], virtual_side)
                 {
                     return Ok(Some(special));
                 }
@@ -69,8 +69,8 @@ impl Along<'_> {
         from: &Point,
         [(low, low_point), (high, high_point)]: [(f64, &Point); 2],
         beyond: &Point,
-    ) -> Result<Option<(f64, SpecialOrbit)>, OrbitError> {
-        let Verdict::Virtual(obstacle) = &beyond.orbit.verdict else { return Ok(None) };
+    ) -> Option<(f64, SpecialOrbit)> {
+        let Verdict::Virtual(obstacle) = &beyond.orbit.verdict else { return None };
         for (kind, segment, rule, margin) in self.margins(from, obstacle) {
             let values = (self.margin(&margin, low_point), self.margin(&margin, high_point));
             let (Some(one), Some(other)) = values else { continue };
@@ -81,10 +81,10 @@ impl Along<'_> {
                 self.zero(low_point, (high - low, one, other), |it| self.margin(&margin, it));
             // The tangent at the point below is not that at the start of the step.
             if let Ok(Some((at, point))) = zero {
-                return Ok(Some((low + at, self.special(kind, Some(segment), rule, point))));
+                return Some((low + at, self.special(kind, Some(segment), rule, point)));
             }
         }
-        Ok(None)
+        None
     }
 
     /// The functions that may change their sign where an obstacle begins.

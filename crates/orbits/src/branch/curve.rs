@@ -109,7 +109,8 @@ impl Orbits {
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
         let along = Along { orbits: self, equations: &equations, parameter: one, range: window[0] };
         let follower = Follower { along, special, window };
-        let start = follower.first(&equations.place(&draft))?;
+        // The special orbit may have been written and read.
+        let start = follower.ahead(&follower.first(&equations.place(&draft))?, 0.0, None)?;
         let (mut ahead, closed) = follower.half(&start, options);
         let mut curve = SpecialCurve {
             kind: special.kind,
@@ -131,7 +132,7 @@ impl Orbits {
             curve.meetings.extend(turned);
             curve.objection = curve.objection.or(back.objection);
         }
-        curve.points.push(special.orbit.clone());
+        curve.points.push(self.judged(&equations, &start.point.orbit)?);
         curve.points.extend(ahead.points);
         let shifted = ahead.meetings.into_iter();
         curve.meetings.extend(shifted.map(|it| Meeting { behind: before + it.behind, ..it }));
@@ -173,9 +174,10 @@ impl Follower<'_> {
             ) => {
                 let event = &point.evaluation.ends[segment].event;
                 let at_event = equations.legs()[segment].rule == rule && event.grazes();
-                match at_event {
-                    true => Tracked::Test(Test::Rate(segment)),
-                    false => Tracked::Margin(Margin::Inner { segment, rule }),
+                if at_event {
+                    Tracked::Test(Test::Rate(segment))
+                } else {
+                    Tracked::Margin(Margin::Inner { segment, rule })
                 }
             }
             (SpecialKind::SlidingEdge | SpecialKind::Choice, Some(segment), _) => {

@@ -36,6 +36,17 @@ impl Point {
     pub fn turned(&self) -> Self {
         Self { tangent: -&self.tangent, ..self.clone() }
     }
+
+    /// Whether the branch passes its start between this point and the next one.
+    pub fn passes(&self, other: &Self, start: &Self) -> bool {
+        let (whole, part) = (&other.place - &self.place, &start.place - &self.place);
+        let along = self.tangent.dot(&part);
+        let length = self.tangent.dot(&whole);
+        let aside = (part - along * &self.tangent).norm();
+        (0.0..=length).contains(&along)
+            && aside < 0.2 * length
+            && self.tangent.dot(&start.tangent) > 0.9
+    }
 }
 
 impl Along<'_> {
@@ -135,17 +146,6 @@ impl Along<'_> {
         let out = point.tangent[last];
         (value <= low + near && out < 0.0) || (value >= high - near && out > 0.0)
     }
-
-    /// Whether the branch passes the start between two points.
-    pub fn passes(&self, one: &Point, other: &Point, start: &Point) -> bool {
-        let (whole, part) = (&other.place - &one.place, &start.place - &one.place);
-        let along = one.tangent.dot(&part);
-        let length = one.tangent.dot(&whole);
-        let aside = (part - along * &one.tangent).norm();
-        (0.0..=length).contains(&along)
-            && aside < 0.2 * length
-            && one.tangent.dot(&start.tangent) > 0.9
-    }
 }
 
 /// The direction of a branch, of length 1 and towards the same side as another one.
@@ -156,14 +156,11 @@ fn tangent(slopes: &DMatrix<f64>, direction: &DVector<f64>) -> Option<DVector<f6
     let mut right = DVector::zeros(count + 1);
     right[count] = 1.0;
     let solved = matrix.clone().lu().solve(&right).filter(|it| it.iter().all(|x| x.is_finite()));
-    let found = match solved {
-        Some(found) => found,
-        None => {
-            // Across the direction: the null vector of the equations alone.
-            matrix.row_mut(count).fill(0.0);
-            super::test::null_vectors(&matrix).1
-        }
-    };
+    let found = solved.unwrap_or_else(|| {
+        // Across the direction: the null vector of the equations alone.
+        matrix.row_mut(count).fill(0.0);
+        super::test::null_vectors(&matrix).1
+    });
     let unit = found.try_normalize(0.0)?;
     Some(if unit.dot(direction) < 0.0 { -unit } else { unit })
 }

@@ -127,18 +127,19 @@ impl Event {
         let n = self.slopes.len();
         self.guard_by.rows(0, n).dot(&self.slopes) + self.guard_by[n]
     }
-}
 
-impl Event {
     /// Whether the formulas have the same values at another time.
     pub fn is_like(&self, later: &Self) -> bool {
-        let own = [&self.after, &self.slopes, &self.slopes_after].map(|it| it.as_slice());
-        let others = [&later.after, &later.slopes, &later.slopes_after].map(|it| it.as_slice());
+        let own = [&self.after, &self.slopes, &self.slopes_after].map(DVector::as_slice);
+        let others = [&later.after, &later.slopes, &later.slopes_after].map(DVector::as_slice);
         let own = own.into_iter().chain([self.after_by.as_slice(), &self.conditions]);
         let others = others.into_iter().chain([later.after_by.as_slice(), &later.conditions]);
         own.zip(others).all(|(own, others)| {
-            let size = own.iter().fold(f64::MIN_POSITIVE, |size, it| size.max(it.abs()));
-            own.iter().zip(others).all(|(one, other)| (one - other).abs() <= LIKE * size)
+            // A condition is zero at its event.
+            let size = own.iter().fold(self.after.amax(), |size, it| size.max(it.abs()));
+            own.iter().zip(others).all(|(one, other)| {
+                (one - other).abs() <= LIKE * (one.abs() + other.abs()) + HIDDEN * size
+            })
         })
     }
 
@@ -157,15 +158,15 @@ impl Event {
 
     /// Whether the mode that follows slides along what was reached: there the condition stays zero.
     pub fn slides_behind(&self) -> bool {
-        let n = self.slopes.len();
-        let parts = (0..n).map(|k| (self.guard_by[k] * self.slopes[k]).abs());
-        let size = parts.fold(self.guard_by[n].abs(), f64::max);
+        let size = self.rate_size();
         size > 0.0 && self.rate_after.abs() <= STILL * size
     }
 }
 
 /// Values that differ by no more than this part are the same.
 const LIKE: f64 = 1e-6;
+/// Values that differ by no more than this part of the largest one beside them are the same.
+const HIDDEN: f64 = 1e-9;
 /// A rate is zero if it is less than this part of what it is made of.
 const STILL: f64 = 1e-10;
 

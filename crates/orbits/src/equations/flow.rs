@@ -92,7 +92,9 @@ impl DynamicSystem for Along {
     fn field(&self, (): (), s: f64, y: &[f64], slope: &mut [f64]) {
         self.program.run(self.origin + self.direction * s, y, slope);
         if self.direction < 0.0 {
-            slope.iter_mut().for_each(|slope| *slope = -*slope);
+            for slope in slope {
+                *slope = -*slope;
+            }
         }
     }
     fn guards(&self, (): ()) -> &[Guard] {
