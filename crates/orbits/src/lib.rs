@@ -3,8 +3,8 @@
 //! [`Orbits`] has the orbits of a [`System`](stickslip_expression::System), which may be a text or
 //! functions of Python. An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
 //! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
-//! [special orbits](SpecialOrbit) on the way; [`Orbits::doubled`] goes over to the orbit of twice
-//! the period at a flip.
+//! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
+//! parameters, and [`Orbits::doubled`] goes over to the orbit of twice the period at a flip.
 //!
 //! ```
 //! use stickslip_expression::System;
