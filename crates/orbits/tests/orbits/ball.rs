@@ -15,10 +15,11 @@ fn random_parameters_have_the_orbits_of_the_closed_form() {
     let (mut compared, mut admissible, mut worst) = (0, 0, [0.0_f64; 3]);
     while compared < 1000 {
         let mut draw = |low: f64, high: f64| low + (high - low) * random.f64();
-        let (r, w, n) = (draw(0.2, 0.95), draw(1.0, 10.0), draw(1.0, 3.999).floor());
-        let period = TAU * n / w;
+        let (r, w) = (draw(0.2, 0.95), draw(1.0, 10.0));
+        let (n, part) = (random.usize(1..4), random.f64());
+        let period = TAU * n as f64 / w;
         let fold = period * (1.0 - r) / (2.0 * (1.0 + r) * w);
-        let a = fold * draw(1.01, 6.0);
+        let a = fold * (1.01 + 5.0 * part);
         let cos = fold / a;
         // Both phases at which the table has the speed that a bounce needs.
         for sine in [(1.0 - cos * cos).sqrt(), -(1.0 - cos * cos).sqrt()] {
@@ -35,7 +36,7 @@ fn random_parameters_have_the_orbits_of_the_closed_form() {
                 continue;
             }
             let state = [a * sine, up * (1.0 + 1e-5)];
-            let mut itinerary = vec!["period"; n as usize];
+            let mut itinerary = vec!["period"; n];
             itinerary.push("bounce");
             let mut durations = vec![TAU / w; itinerary.len()];
             durations[0] = PI / w - time;
@@ -65,7 +66,7 @@ fn random_parameters_have_the_orbits_of_the_closed_form() {
             match orbit.verdict {
                 Verdict::Admissible => assert!(room > -1e-9, "{a} {w} {r} {n} {sine}: {room}"),
                 Verdict::Virtual(_) => {
-                    assert!(room < 0.0, "{a} {w} {r} {n} {sine}: {room} {orbit:?}")
+                    assert!(room < 0.0, "{a} {w} {r} {n} {sine}: {room} {orbit:?}");
                 }
                 Verdict::Undecided(ref reason) => panic!("{a} {w} {r} {n} {sine}: {reason}"),
             }

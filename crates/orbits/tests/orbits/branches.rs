@@ -51,8 +51,8 @@ fn an_impact_oscillator_grazes_and_folds() {
 fn the_grazing_curve_of_impacts() {
     let orbits = impact::orbits();
     let mut worst = 0.0_f64;
-    for k in 0..150 {
-        let w = 0.35 + 0.01 * f64::from(k);
+    for k in 0..10 {
+        let w = 0.35 + 0.15 * f64::from(k);
         let closed = Closed { w, a: 0.0, ..Closed::EXAMPLE };
         let graze = closed.d * closed.impedance();
         let closed = Closed { a: 1.02 * graze, ..closed };
@@ -68,7 +68,7 @@ fn the_grazing_curve_of_impacts() {
         assert!(error < 1e-11, "{w}: {found:?}, {graze}, {:?}", branch.objection);
         worst = worst.max(error);
     }
-    println!("150 grazes, error {worst:e}");
+    println!("10 grazes, error {worst:e}");
 }
 
 #[test]

@@ -17,17 +17,17 @@ pub struct Closed {
     pub a: f64,
     pub w: f64,
     pub e: f64,
-    pub n: f64,
+    pub n: usize,
 }
 
 impl Closed {
-    pub const EXAMPLE: Self = Self { k: 1.0, c: 0.1, d: 1.0, a: 1.0, w: 1.0, e: 0.8, n: 1.0 };
+    pub const EXAMPLE: Self = Self { k: 1.0, c: 0.1, d: 1.0, a: 1.0, w: 1.0, e: 0.8, n: 1 };
 
     pub fn parameters(&self) -> [f64; 6] {
         [self.k, self.c, self.d, self.a, self.w, self.e]
     }
     fn period(&self) -> f64 {
-        TAU * self.n / self.w
+        TAU * self.n as f64 / self.w
     }
     fn free(&self, t: f64) -> [f64; 4] {
         let rate = (self.k - self.c * self.c / 4.0).sqrt();
@@ -94,7 +94,7 @@ pub fn orbits() -> Orbits {
 pub fn near(orbits: &Orbits, closed: &Closed, v: f64, aside: f64) -> Result<Orbit, OrbitError> {
     let phase = closed.phase(v);
     let state = [closed.d, -closed.e * v * (1.0 + aside), phase + aside];
-    let mut itinerary = vec!["phase"; closed.n as usize];
+    let mut itinerary = vec!["phase"; closed.n];
     itinerary.push("impact");
     let mut durations = vec![TAU / closed.w; itinerary.len()];
     durations[0] = (PI - phase) / closed.w;
@@ -134,7 +134,7 @@ fn random_parameters_have_the_orbits_of_the_closed_form() {
             a: draw(0.1, 3.0),
             w: draw(0.4, 3.0),
             e: draw(0.3, 1.0),
-            n: draw(1.0, 3.999).floor(),
+            n: random.usize(1..4),
         };
         for v in closed.speeds() {
             let room = closed.room(v);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use stickslip_expression::System;
-use stickslip_orbits::{BranchOptions, Guess, Orbits, SpecialKind};
+use stickslip_orbits::{BranchOptions, Guess, Orbit, Orbits, SpecialKind};
 
 use crate::branches::values;
 
@@ -49,5 +49,5 @@ fn a_block_begins_to_stick() {
             .iter()
             .all(|it| it.multipliers.as_ref().is_some_and(|all| all[1] == [0.0; 2]))
     );
-    assert!(branch.points.iter().any(|it| it.is_admissible()));
+    assert!(branch.points.iter().any(Orbit::is_admissible));
 }
