@@ -59,7 +59,7 @@ const STRETCHES: [(Stretch, &str, Stroke); 4] = [
     (Stretch::Stable, "stable", Stroke::full(BLUE, 2.4)),
 ];
 const COLOURS: [&str; 5] = [INK, GREEN, PURPLE, ORANGE, SKY];
-const SHAPES: [Shape; 4] = [Shape::Disc, Shape::Square, Shape::Ring, Shape::Cross];
+const SHAPES: [Shape; 4] = [Shape::Disc, Shape::Ring, Shape::Square, Shape::Cross];
 
 /// Draws `branch`.
 #[must_use]
