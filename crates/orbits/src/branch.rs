@@ -168,6 +168,7 @@ impl Orbits {
         options: &BranchOptions,
     ) -> Result<Branch, OrbitError> {
         options.validate()?;
+        self.compiled.with(&orbit.parameters)?;
         let count = self.system.parameters.len();
         let expected = format!("the place of one of {count} parameters");
         InvalidValue::check("the parameter", parameter, expected, parameter < count)?;

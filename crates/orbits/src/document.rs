@@ -201,16 +201,12 @@ impl OrbitRecord {
         };
         let names = system.parameters.iter().map(|it| value(&it.name));
         let parameters = names.collect::<Result<Vec<f64>, _>>()?;
-        let n = system.components.len();
         let mut segments = Vec::with_capacity(self.segments.len());
         for own in &self.segments {
             let leg = Leg { mode: mode(&own.mode)?, rule: own.place, next: mode(&own.next)? };
             let rules = &system.modes[leg.mode].rules;
             let known = rules.get(leg.rule).is_some_and(|it| it.name(leg.rule) == own.rule);
             InvalidValue::check("rule", &*own.rule, "the rule at its place in its mode", known)?;
-            let fits = own.state.len() == n && own.state.iter().all(|it| it.is_finite());
-            let expected = format!("{n} finite numbers");
-            InvalidValue::check("the state of a segment", own.state.len(), expected, fits)?;
             let (state, end) = (own.state.clone(), own.end.clone());
             segments.push(Segment { leg, state, duration: own.duration, end, rate: own.rate });
         }
@@ -338,20 +334,12 @@ impl CurveDocument {
 }
 
 impl SpecialRecord {
-    /// The special orbit of a system. Its orbit is solved for again, as one among others.
+    /// The special orbit of a system, as it is written.
     ///
     /// # Errors
-    /// [`OrbitError`]: the record is not of this system, or there is no such orbit.
-    pub fn special(&self, orbits: &Orbits) -> Result<SpecialOrbit, OrbitError> {
+    /// [`InvalidValue`]: the record is not of this system.
+    pub fn special(&self, orbits: &Orbits) -> Result<SpecialOrbit, InvalidValue> {
         let orbit = self.orbit.read(orbits)?;
-        let segments = orbit.segments.len();
-        let expected = format!("one of {segments} segments");
-        let segment = self.segment.unwrap_or(0);
-        InvalidValue::check("segment", segment, expected, segment < segments)?;
-        let rules = orbits.system().modes[orbit.segments[segment].leg.mode].rules.len();
-        let rule = self.place.unwrap_or(0);
-        let expected = format!("one of {rules} rules");
-        InvalidValue::check("place", rule, expected, self.place.is_none() || rule < rules)?;
         let Self { kind, value, behind, segment, place, .. } = *self;
         Ok(SpecialOrbit { kind, value, behind, segment, rule: place, orbit })
     }

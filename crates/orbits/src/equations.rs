@@ -19,7 +19,7 @@ use stickslip_expression::{
 use stickslip_solver::{GivenValue, Options};
 
 use crate::error::OrbitError;
-use crate::itinerary::{Leg, require_short};
+use crate::itinerary::{Leg, require_of};
 pub(crate) use event::Event;
 use event::{EventFormulas, by_each};
 use flow::{Flow, Flown};
@@ -103,7 +103,7 @@ impl Equations {
         options: &Options,
     ) -> Result<Self, OrbitError> {
         let (n, m) = (system.components.len(), anchor.legs.len());
-        require_short(m, n)?;
+        require_of(system, &anchor.legs, &anchor.states)?;
         let legs = anchor.legs.clone();
         let mut graph = system.graph.clone();
         let places: Vec<usize> = active.iter().map(|(place, _)| *place).collect();

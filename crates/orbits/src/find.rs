@@ -150,6 +150,7 @@ impl Orbits {
     /// # Errors
     /// [`OrbitError`]: a segment cannot be computed.
     pub fn course(&self, orbit: &Orbit, parts: usize) -> Result<Vec<(f64, Vec<f64>)>, OrbitError> {
+        self.compiled.with(&orbit.parameters)?;
         let draft = orbit.draft();
         let equations = Equations::new(&self.system, draft.clone(), &[], &self.options)?;
         let mut course = Vec::with_capacity((parts + 1) * orbit.segments.len());

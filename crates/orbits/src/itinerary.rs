@@ -71,3 +71,23 @@ pub(crate) fn require_short(legs: usize, components: usize) -> Result<(), Invali
     let expected = format!("1 to {most} for a system of {components} components");
     InvalidValue::check("the number of segments", legs, expected, (1..=most).contains(&legs))
 }
+
+/// Refuses segments that are not those of a system: their legs, and the states at their starts.
+pub(crate) fn require_of(
+    system: &System,
+    legs: &[Leg],
+    states: &[Vec<f64>],
+) -> Result<(), InvalidValue> {
+    let (n, modes) = (system.components.len(), system.modes.len());
+    require_short(legs.len(), n)?;
+    for (leg, state) in legs.iter().zip(states) {
+        let mode = leg.mode.max(leg.next);
+        InvalidValue::check("the mode of a segment", mode, "one of the system", mode < modes)?;
+        let known = leg.rule < system.modes[leg.mode].rules.len();
+        InvalidValue::check("the rule of a segment", leg.rule, "one of its mode", known)?;
+        let (count, expected) = (state.len(), format!("{n} finite numbers"));
+        let fits = count == n && state.iter().all(|it| it.is_finite());
+        InvalidValue::check("the state of a segment", count, expected, fits)?;
+    }
+    Ok(())
+}

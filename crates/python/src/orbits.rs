@@ -92,7 +92,7 @@ impl OrbitSystem {
         longest_step: f64,
     ) -> PyResult<String> {
         let record: SpecialRecord = serde_json::from_str(special).map_err(bad_input)?;
-        let special = record.special(&self.0).map_err(exception)?;
+        let special = record.special(&self.0).map_err(bad_input)?;
         let usual = BranchOptions::default();
         let first_step = usual.first_step.min(longest_step);
         let options = BranchOptions { first_step, longest_step, ..usual };

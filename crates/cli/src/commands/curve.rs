@@ -84,7 +84,8 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
         )));
     }
     let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
-    let special = record.special(&orbits).map_err(failure)?;
+    let special = record.special(&orbits);
+    let special = special.map_err(|error| Failure::Usage(error.to_string()))?;
     let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
     let curve = orbits.curve(&special, parameters, window, &BranchOptions::default());
     let curve = curve.map_err(failure)?;

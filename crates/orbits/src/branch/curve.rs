@@ -90,6 +90,7 @@ impl Orbits {
         options: &BranchOptions,
     ) -> Result<SpecialCurve, OrbitError> {
         options.validate()?;
+        self.compiled.with(&special.orbit.parameters)?;
         let count = self.system.parameters.len();
         let [one, other] = parameters;
         let expected = format!("the places of two of {count} parameters");
@@ -104,6 +105,14 @@ impl Orbits {
             let expected = format!("a value in the range {low:?}:{high:?} of the curve");
             InvalidValue::check(name.clone(), value, expected, (low..=high).contains(&value))?;
         }
+        let segments = &special.orbit.segments;
+        let segment = special.segment.unwrap_or(0);
+        let expected = format!("one of {} segments", segments.len());
+        InvalidValue::check("the segment", segment, expected, segment < segments.len())?;
+        let rules = self.system.modes.get(segments[segment].leg.mode);
+        let rules = rules.map_or(0, |mode| mode.rules.len());
+        let (rule, expected) = (special.rule.unwrap_or(0), format!("one of {rules} rules"));
+        InvalidValue::check("the rule", rule, expected, special.rule.is_none() || rule < rules)?;
         let active = [0, 1].map(|k| (parameters[k], window[k][1] - window[k][0]));
         let draft = special.orbit.draft();
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;

@@ -19,6 +19,7 @@ impl Orbits {
     pub fn doubled(&self, flip: &Orbit, parameter: usize, aside: f64) -> Result<Orbit, OrbitError> {
         let accepted = aside > 0.0 && aside <= 0.5;
         InvalidValue::check("the distance from a flip", aside, "above 0, to 0.5", accepted)?;
+        self.compiled.with(&flip.parameters)?;
         let count = self.system.parameters.len();
         let expected = format!("the place of one of {count} parameters");
         InvalidValue::check("the parameter", parameter, expected, parameter < count)?;

@@ -116,6 +116,16 @@ fn branches_refuse_what_they_cannot_follow() {
     assert!(refused(3, [0.0, f64::NAN], &options).contains("LO:HI"));
     let none = BranchOptions { first_step: 0.0, ..options };
     assert!(refused(3, [0.0, 2.0], &none).contains("first_step"));
+    // An orbit of another system, or one that was made by hand.
+    let mut other = orbit.clone();
+    other.segments[0].leg.rule = 7;
+    assert!(orbits.branch(&other, 3, [0.0, 2.0], &options).is_err());
+    other.segments[0].state.pop();
+    assert!(orbits.continued(&other, &values).is_err());
+    other.segments.clear();
+    assert!(orbits.course(&other, 3).is_err());
+    other.parameters.clear();
+    assert!(orbits.branch(&other, 3, [0.0, 2.0], &options).is_err());
     let wrong = orbits.find(&values[..3], &guess).expect_err("refused");
     assert!(matches!(wrong, OrbitError::Value(_)));
     let state = [f64::NAN, 0.0, 0.0];
