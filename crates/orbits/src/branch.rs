@@ -3,9 +3,11 @@
 //! The equations of an orbit are smooth through folds and through grazes, so a branch goes through
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
-//! zero at special orbits, `locate` finds their zeros, `change` finds where the verdict
-//! changes, `curve` follows special orbits over two parameters, `doubled` goes over to orbits of twice the period.
+//! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
+//! `change` finds where the verdict changes, `curve` follows special orbits over two parameters,
+//! and `doubled` goes over to orbits of twice the period.
 
+mod borders;
 mod change;
 pub(crate) mod curve;
 mod doubled;

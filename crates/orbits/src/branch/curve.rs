@@ -7,10 +7,11 @@
 use nalgebra::{DMatrix, DVector};
 use stickslip_expression::InvalidValue;
 
+use super::borders::{Borders, null_vectors};
 use super::change::Margin;
 use super::locate::zero;
 use super::point::{Along, Point};
-use super::test::{Borders, Test};
+use super::test::Test;
 use super::{BranchOptions, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;
@@ -418,7 +419,7 @@ fn direction(
         return None;
     }
     matrix.row_mut(count).copy_from(&(gradient / size).transpose());
-    let unit = super::test::null_vectors(&matrix).1;
+    let unit = null_vectors(&matrix).1;
     let turned = towards.is_some_and(|towards| unit.dot(towards) < 0.0);
     Some(if turned { -unit } else { unit })
 }

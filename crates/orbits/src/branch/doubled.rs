@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use stickslip_expression::InvalidValue;
 
-use super::test::null_vectors;
+use super::borders::null_vectors;
 use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
 use crate::find::Orbits;

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::borders::null_vectors;
 use crate::equations::{Draft, Equations, Evaluation};
 use crate::error::OrbitError;
 use crate::find::Orbits;
@@ -159,7 +160,7 @@ fn tangent(slopes: &DMatrix<f64>, direction: &DVector<f64>) -> Option<DVector<f6
     let found = solved.unwrap_or_else(|| {
         // Across the direction: the null vector of the equations alone.
         matrix.row_mut(count).fill(0.0);
-        super::test::null_vectors(&matrix).1
+        null_vectors(&matrix).1
     });
     let unit = found.try_normalize(0.0)?;
     Some(if unit.dot(direction) < 0.0 { -unit } else { unit })
