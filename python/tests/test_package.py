@@ -4,8 +4,10 @@ import ast
 import inspect
 import os
 import pydoc
+import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ import pytest
 import stickslip
 
 SOURCE = Path(stickslip.__file__).read_text(encoding="utf-8")
+BESIDE = Path(sys.executable).parent / "stickslip"
 
 
 def test_signatures_are_short() -> None:
@@ -67,25 +70,31 @@ print(*sys.modules)
     assert not heavy & set(second.split())
 
 
-def run(arguments: list[str], path: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "stickslip", *arguments],
-        env=os.environ | {"PATH": str(path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+def test_the_package_has_the_program(tmp_path: Path) -> None:
+    """As a module, and as the command that is installed beside the interpreter."""
+    arguments = ["collide", "--kappa", "63", "--psi", "0.5"]
+    whole = None
+    for command in ([sys.executable, "-m", "stickslip"], [str(BESIDE)]):
+        if command == [str(BESIDE)] and not BESIDE.exists():
+            continue
+        run = partial(subprocess.run, capture_output=True, text=True, check=False, cwd=tmp_path)
+        found = run([*command, *arguments])
+        assert found.returncode == 0 and "+o-o+o-" in found.stdout
+        assert whole in (None, found.stdout)
+        whole = found.stdout
+        assert run([*command, "--version"]).stdout.startswith(f"stickslip {stickslip.__version__}")
+        wrong = run([*command, "collide", "--kappa", "-1", "--psi", "1"])
+        assert wrong.returncode == 2 and "kappa" in wrong.stderr
+        failed = run([*command, "render", "missing.json"])
+        assert failed.returncode in (1, 2) and "missing.json" in failed.stderr
 
 
-@pytest.mark.skipif(os.name != "posix", reason="the program is a script here")
-def test_the_program_is_found(tmp_path: Path) -> None:
-    beside = Path(sys.executable).parent / "stickslip"
-    if beside.exists():
-        pytest.skip("a program is installed beside the interpreter")
-    missing = run(["collide"], tmp_path)
-    assert missing.returncode == 1 and "stickslip is not installed" in missing.stderr
-    program = tmp_path / "stickslip"
-    program.write_text('#!/bin/sh\necho "$@"\nexit 3\n')
-    program.chmod(0o755)
-    found = run(["collide", "63", "two words"], tmp_path)
-    assert (found.returncode, found.stdout) == (3, "collide 63 two words\n")
+@pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
+def test_an_interrupt_ends_the_program(tmp_path: Path) -> None:
+    window = ["--kappa", "0.05:1000", "--psi", "0.01:3", "--damping", "0.01"]
+    command = [sys.executable, "-m", "stickslip", "trace", *window, "--out", "atlas.json"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE) as running:
+        assert running.stderr is not None and running.stderr.read(1)  # It has begun.
+        running.send_signal(signal.SIGINT)
+        assert running.wait(10) == -signal.SIGINT
+    assert not any(tmp_path.iterdir())
