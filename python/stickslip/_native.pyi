@@ -106,6 +106,7 @@ class FormulaSystem:
         end: float | None,
         settings: dict[str, Any],
         times: list[float] | None,
+        progress: _Report | None = None,
     ) -> dict[str, Any]: ...
     def converge(
         self,
@@ -371,6 +372,7 @@ def run_hybrid(
     end: float,
     settings: dict[str, Any],
     output: tuple[_Floats | None, bool],
+    progress: _Report | None = None,
 ) -> dict[str, Any]: ...
 def evaluate_dense(
     segments: tuple[_Floats, _Floats, _Floats], end: tuple[float, _Floats], times: _Floats

@@ -46,7 +46,7 @@ from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
-from stickslip._run_arguments import settings_of, span, state_at_start
+from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start
 from stickslip.formulas import FormulaSystem
 from stickslip.hybrid import MOST_RECORDED, _arguments, _callee, _Table
 
@@ -207,7 +207,9 @@ class HybridFamily:
                 for guard in source.guards:
                     for what, function in (("reset", guard.reset), ("condition", guard.condition)):
                         _check_parameters(function, f"the {what} of guard {guard.name!r}")
-        settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
+        settings = settings_of(
+            "dop853", (rtol, atol), (max_step, first_step), (max_switches, MOST_STEPS)
+        )
         settings["guard_scale"] = (
             None if guard_scale is None else _number(guard_scale, "guard_scale")
         )
@@ -329,7 +331,9 @@ class HybridFamily:
                 raise ValueError(f"{axis!r} is no parameter; expected one of {', '.join(known)}")
         if end is not None and np.isnan(_number(end, "end")):
             raise ValueError(f"end = {end!r}; expected a number")
-        settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
+        settings = settings_of(
+            "dop853", (rtol, atol), (max_step, first_step), (max_switches, MOST_STEPS)
+        )
         family = cls.__new__(cls)
         family._made = partial(
             cls.of, system, x, y, parameters=parameters, end=end, name=name, rtol=rtol, atol=atol,

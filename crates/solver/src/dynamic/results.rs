@@ -97,9 +97,9 @@ pub trait DynamicObserver<Mode> {
     /// one instant, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
     fn forget(&mut self, _switches: usize) {}
 
-    /// Whether the run should stop, with [`Outcome::Stopped`]. Called after every step and every
-    /// switch.
-    fn stops(&self) -> bool {
+    /// Whether the run should stop at `s`, with [`Outcome::Stopped`]. Called after every step and
+    /// every switch.
+    fn stops(&self, _s: f64) -> bool {
         false
     }
 

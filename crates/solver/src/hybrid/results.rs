@@ -116,9 +116,9 @@ pub trait Observer<Mode, const N: usize> {
     /// one instant, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
     fn forget(&mut self, _switches: usize) {}
 
-    /// Whether the run should stop, with [`Outcome::Stopped`]. Called after every step and every
-    /// switch.
-    fn stops(&self) -> bool {
+    /// Whether the run should stop at `s`, with [`Outcome::Stopped`]. Called after every step and
+    /// every switch.
+    fn stops(&self, _s: f64) -> bool {
         false
     }
 
