@@ -50,6 +50,8 @@ def state_at_start(y0: ArrayLike) -> Floats:
 
 def times_within(t_eval: ArrayLike, start: float, end: float) -> Floats:
     times = _reals(t_eval, "t_eval")
+    if times.shape == (0,):
+        return times
     if times.ndim != 1:
         raise ValueError(f"t_eval has {times.ndim} dimensions; expected one")
     low, high = min(start, end), max(start, end)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -22,7 +22,7 @@ from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._solutions import Names, Solution, with_variables
-from stickslip._progress import Progress, keeping, reported
+from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip.collisions import _threads
 from stickslip.studies import Study, _study
 
@@ -56,6 +56,10 @@ class FormulaSystem:
     def parameters(self) -> dict[str, float]:
         """The values that parameters have unless others are given, by name."""
         return dict(self._defaults)
+
+    @cached_property
+    def _size(self) -> int:
+        return len(self.components)
 
     @cached_property
     def _defaults(self) -> dict[str, float]:
@@ -128,10 +132,9 @@ class FormulaSystem:
             found["message"] = f"Stopped at t = {found['end_time']!r} by Ctrl-C."
             return self._solution(found, bool(dense_output), rerun)
 
-        with reported(progress, "solve") as report, keeping(until_now):
-            found = self._native.run(values, given, end, settings, times, report)
-            if report is not None:
-                report(1000, 1000)
+        with keeping(until_now):
+            run = partial(self._native.run, values, given, end, settings, times)
+            found = reporting(progress, "solve", run)
         return self._solution(found, bool(dense_output), rerun)
 
     def sensitivities(
@@ -224,7 +227,7 @@ class FormulaSystem:
         if mode is not None and mode not in self.modes:
             raise ValueError(f"mode = {mode!r}; expected one of {self.modes}")
         place = None if mode is None else self.modes.index(mode)
-        settings = settings_of(method, tolerances, steps, most, len(self.components))
+        settings = settings_of(method, tolerances, steps, most, self._size)
         return values, (place, start, state), end, settings
 
     def _solution(

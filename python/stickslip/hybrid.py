@@ -10,6 +10,7 @@ import operator
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from itertools import count
 from typing import Any, TypeAlias
 
@@ -18,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._compiled import Compiled, Function, _number
-from stickslip._progress import Progress, Report, reported
+from stickslip._progress import Progress, Report, reporting
 from stickslip._recorded import Recorded
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._solutions import Beside, Names, Solution, variable_columns
@@ -112,10 +113,8 @@ def solve(
     if settings["guard_scale"] is not None and not settings["guard_scale"] > 0.0:
         raise ValueError(f"guard_scale = {guard_scale}; expected a number above 0")
     job = _Job(table, (first, start, end), state, settings, times, bool(dense_output), given)
-    with reported(progress, "solve") as report:
-        solution = _solved(job, table.sides(sides or {}), record, report)
-        if report is not None:
-            report(1000, 1000)
+    run = partial(_solved, job, table.sides(sides or {}), record)
+    solution = reporting(progress, "solve", run)
     if record is None and settings["guard_scale"] is None and not solution.decided:
         _warn_once(solution.guards)
     return solution

@@ -7,6 +7,7 @@ import pydoc
 import signal
 import subprocess
 import sys
+import time
 from functools import partial
 from pathlib import Path
 
@@ -85,16 +86,21 @@ def test_the_package_has_the_program(tmp_path: Path) -> None:
         assert run([*command, "--version"]).stdout.startswith(f"stickslip {stickslip.__version__}")
         wrong = run([*command, "collide", "--kappa", "-1", "--psi", "1"])
         assert wrong.returncode == 2 and "kappa" in wrong.stderr
-        failed = run([*command, "render", "missing.json"])
+        failed = run([*command, "impact", "missing.json"])
         assert failed.returncode in (1, 2) and "missing.json" in failed.stderr
 
 
 @pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
 def test_an_interrupt_ends_the_program(tmp_path: Path) -> None:
-    window = ["--kappa", "0.05:1000", "--psi", "0.01:3", "--damping", "0.01"]
-    command = [sys.executable, "-m", "stickslip", "trace", *window, "--out", "atlas.json"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE) as running:
-        assert running.stderr is not None and running.stderr.read(1)  # It has begun.
+    """What is not complete is removed."""
+    given, folder = tmp_path / "cases.csv", tmp_path / "results"
+    given.write_text("kappa,psi\n" + "1e6,1\n" * 100_000)
+    folder.mkdir()
+    batch = ["collide", "--method", "dop853", "--batch", str(given), "--out", "results.csv"]
+    with subprocess.Popen([sys.executable, "-m", "stickslip", *batch], cwd=folder) as running:
+        while not any(folder.iterdir()):
+            assert running.poll() is None
+            time.sleep(0.01)
         running.send_signal(signal.SIGINT)
         assert running.wait(10) == -signal.SIGINT
-    assert not any(tmp_path.iterdir())
+    assert list(folder.iterdir()) == []

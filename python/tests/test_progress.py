@@ -94,7 +94,7 @@ def test_a_run_says_how_far_it_is(run: Callable[[object], stickslip.Solution]) -
 
 def test_a_run_without_an_end_is_never_done() -> None:
     told: list[int] = []
-    stickslip.system(OSCILLATOR.replace("end = 100", "state t = 0\nt' = 1\nwhen t > 60 stop")).solve(
+    stickslip.system(OSCILLATOR.replace("end = 100", "when t > 60 -> end")).solve(
         t_eval=[], progress=lambda done, steps: told.append(done)
     )
     assert set(told[:-1]) == {0} and told[-1] == 1000

@@ -19,8 +19,7 @@ def slopes(t: float, y: np.ndarray) -> list[float]:
 
 def beside_a_surface() -> stickslip.HybridSystem:
     """The same, which never reaches its surface."""
-    system = stickslip.HybridSystem()
-    system.sliding("far", lambda t, y: y[0] - 1.0)
+    system = stickslip.HybridSystem(sliding={"far": lambda t, y: y[0] - 1.0})
     system.mode("only", lambda t, y, side: slopes(t, y))
     return system
 
