@@ -51,6 +51,7 @@ impl<Mode: Copy> DynamicEvent<'_, Mode> {
 
 /// A [`DynamicEvent`] that is kept. A `Vec` of them is an observer.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DynamicSwitch<Mode> {
     /// The place of the switch.
     pub s: f64,
@@ -128,6 +129,7 @@ impl<Mode: Copy> DynamicObserver<Mode> for Vec<DynamicSwitch<Mode>> {
 /// How a run of a [`DynamicSystem`](crate::dynamic::DynamicSystem) ended.
 #[must_use = "a run may end early, which its outcome tells; `finished` turns that into an error"]
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DynamicRun<Mode> {
     /// Why the run ended.
     pub outcome: Outcome,
