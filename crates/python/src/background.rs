@@ -53,13 +53,13 @@ impl Signals {
 
     fn tell(&self, py: Python<'_>, s: f64) -> PyResult<()> {
         /// Steps of a whole run.
-        const STEPS: f64 = 1000.0;
+        const STEPS: u32 = 1000;
         let Some(progress) = &self.progress else { return Ok(()) };
         let [start, end] = self.span;
-        // An infinite span is never done; a whole number below 1000 fits.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let done = (STEPS * ((s - start) / (end - start)).clamp(0.0, 1.0)) as usize;
-        progress.call1(py, (done, STEPS as usize)).map(drop)
+        // An infinite span is never done.
+        let part = f64::from(STEPS) * (s - start) / (end - start);
+        let done = (1..=STEPS).take_while(|&step| f64::from(step) <= part).count();
+        progress.call1(py, (done, STEPS)).map(drop)
     }
 
     /// The exception of Ctrl-C or of `progress`, if there is one.
