@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 19] = [
+const SOURCES: [&str; 20] = [
     "src",
     "build.rs",
     "templates",
@@ -20,6 +20,7 @@ const SOURCES: [&str; 19] = [
     "../files/src",
     "../model/src",
     "../number/src",
+    "../orbits/src",
     "../page/explorer.html",
     "../plane/src",
     "../practice/src",

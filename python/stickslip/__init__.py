@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from stickslip._explorer import Explorer, explore
     from stickslip._laws import NamedLaw, laws
     from stickslip._native import ComputationError
+    from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialCurve, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
     from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
@@ -100,6 +101,7 @@ __all__ = [
     "AtlasWarning",
     "Bodies",
     "Boundary",
+    "Branch",
     "Change",
     "Collision",
     "Collisions",
@@ -134,12 +136,16 @@ __all__ = [
     "MonitorZero",
     "Motion",
     "NamedLaw",
+    "Orbit",
+    "OrbitSegment",
     "Region",
     "RestitutionTable",
     "SampledGuardsWarning",
     "Sensitivities",
     "Sensitivity",
     "Solution",
+    "SpecialCurve",
+    "SpecialOrbit",
     "Sphere",
     "Stack",
     "StackInterrupted",
@@ -197,6 +203,7 @@ _MODULES = {
     "_explorer": "Explorer explore",
     "_laws": "NamedLaw laws",
     "_native": "ComputationError",
+    "_orbits": "Branch Orbit OrbitSegment SpecialCurve SpecialOrbit",
     "_solutions": "DenseOutput Solution",
     "_systems": "Guard HybridSystem Mode",
     "atlases": "Atlas AtlasWarning Boundary Located Region Vertex trace",

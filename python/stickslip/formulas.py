@@ -6,7 +6,7 @@ repository.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike
@@ -16,13 +16,14 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _orbits
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
+from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
+from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._solutions import Names, Solution, with_variables
-from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip.collisions import _threads
 from stickslip.studies import Study, _study
 
@@ -177,6 +178,118 @@ class FormulaSystem:
         begin = (t_span, y0, mode)
         rerun = self._arguments(begin, parameters, method, (rtol, atol), steps, most)
         return sensitivities_of(self, by, rerun)
+
+    def orbit(
+        self,
+        *,
+        itinerary: Sequence[str] | None = None,
+        start: ArrayLike | None = None,
+        mode: str | None = None,
+        time: float | None = None,
+        durations: ArrayLike | None = None,
+        settle: float | None = None,
+        near: Orbit | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Orbit:
+        """The periodic orbit near a guess, its multipliers, and whether the system follows it.
+
+        itinerary: the rules that end the segments, in order. From start, mode and time (those of
+        the system if they are not given) these rules act one after another, others are not looked
+        at, and the search goes on from there; durations of the segments may be given instead.
+        settle: a run of this time from the start settles to the orbit. near: an orbit at other
+        parameters, with the same itinerary. One of itinerary, settle and near is needed.
+
+        States are accurate to about 1e-12 of their size, multipliers to 1e-11 of the largest one.
+        Raises ValueError if a name or a value is wrong, ComputationError if there is no orbit.
+
+        >>> import stickslip
+        >>> relay = stickslip.system(\"\"\"
+        ... parameter width = 0.5
+        ... state x = 0
+        ... mode up
+        ...   x' = 1 - x
+        ...   when x > width "down" -> down
+        ... mode down
+        ...   x' = -1 - x
+        ...   when x < -width "up" -> up
+        ... start in up
+        ... \"\"\")
+        >>> orbit = relay.orbit(itinerary=["down", "up"])
+        >>> round(orbit.period, 12), orbit.admissible, orbit.stable
+        (2.197224577336, True, True)
+        """
+        return _orbits.orbit(
+            self, itinerary, (start, mode, time), durations, settle, near, parameters
+        )
+
+    def branch(
+        self,
+        orbit: Orbit,
+        parameter: str,
+        interval: tuple[float, float],
+        *,
+        longest_step: float = 0.05,
+        most_points: int = 2000,
+    ) -> Branch:
+        """The branch of an orbit over an interval of a parameter, in both directions, through folds
+        and grazes. Orbits that the system does not follow are kept and marked.
+
+        longest_step: along the branch, of the size of what changes. most_points: in either
+        direction. Special orbits are located to about 1e-11 of the interval.
+
+        Raises ValueError if a name or a value is wrong, ComputationError if the branch does not
+        begin. Where it breaks off later, `objection` says why.
+
+        >>> import stickslip
+        >>> ball = stickslip.system(\"\"\"
+        ... parameter a = 0.02, r = 0.7
+        ... state x = 0.015, v = 0.5, phase = 0.8
+        ... table = a*sin(phase)
+        ... x' = v
+        ... v' = -1
+        ... phase' = 2*pi
+        ... when x < table "bounce"
+        ...   x := table
+        ...   v := (1 + r)*table' - r*v
+        ... when phase > 2*pi "period"
+        ...   phase := phase - 2*pi
+        ... \"\"\")
+        >>> orbit = ball.orbit(itinerary=["period", "bounce"])
+        >>> branch = ball.branch(orbit, "a", (0.005, 0.05))
+        >>> [(it.kind, round(it.value, 10)) for it in branch.specials if it.kind == "flip"]
+        [('flip', 0.029654967)]
+        """
+        return _orbits.branch(self, orbit, parameter, interval, longest_step, most_points)
+
+    def curve(
+        self,
+        special: SpecialOrbit,
+        parameters: tuple[str, str],
+        x: tuple[float, float],
+        y: tuple[float, float],
+        *,
+        longest_step: float = 0.05,
+    ) -> SpecialCurve:
+        """The curve of a special orbit of a branch over two parameters, in the window of the
+        intervals x and y, in both directions. `meetings` are orbits at which something else changes
+        too: on a curve of neimark-sacker, fold is the resonance 1:1 and flip 1:2.
+
+        Raises ValueError if a name or a value is wrong, or for the kinds branch-point and boundary,
+        and ComputationError if the curve does not begin.
+        """
+        return _orbits.curve(self, special, parameters, x, y, longest_step)
+
+    def doubled(self, orbit: Orbit, parameter: str, *, aside: float = 0.05) -> Orbit:
+        """The orbit of twice the period that begins at a flip: beside it by `aside` of the size of
+        its states, at the value of the parameter where it is so far away.
+
+        Raises ValueError if a name or a value is wrong, ComputationError if none is found.
+        """
+        return _orbits.doubled(self, orbit, parameter, aside)
+
+    @cached_property
+    def _orbits(self) -> _native.OrbitSystem:
+        return _native.OrbitSystem(self._native)
 
     def converge(
         self,

@@ -15,7 +15,7 @@ const LAYERS: [&[&str]; 12] = [
     &["stickslip-solver"],
     &["stickslip-contact", "stickslip-tracer"],
     &["stickslip-exact", "stickslip-expression"],
-    &["stickslip-model"],
+    &["stickslip-model", "stickslip-orbits"],
     &["stickslip-plane"],
     &["stickslip-explorer", "stickslip-practice", "stickslip-studies"],
     &["stickslip-figure"],
