@@ -39,6 +39,7 @@ mod search;
 mod settings;
 mod survey;
 
+use stickslip_model::restitution::RestitutionError;
 use stickslip_model::{CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
@@ -313,14 +314,9 @@ pub enum FitError {
     /// The boundaries cannot be traced.
     #[error(transparent)]
     Boundaries(#[from] Box<AtlasError>),
-    /// No damping has a given ε_n.
-    #[error("no damping of this law has eps_n = {eps_n:?}; expected {least:?} to 1")]
-    Unreachable {
-        /// The coefficient.
-        eps_n: f64,
-        /// The least that was reached.
-        least: f64,
-    },
+    /// No damping has a given ε_n, or it cannot be found.
+    #[error(transparent)]
+    Restitution(#[from] RestitutionError),
     /// A search has no places to start from.
     #[error("a search has no places to start from")]
     NoPlaces,
