@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from stickslip._compiled import Compiled
     from stickslip._derivatives import Sensitivities
     from stickslip._explorer import Explorer, explore
-    from stickslip._laws import NamedLaw, laws
+    from stickslip._laws import Keyword, NamedLaw, Restitution, laws, restitution
     from stickslip._native import ComputationError
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
@@ -127,6 +127,7 @@ __all__ = [
     "HybridSystem",
     "Impacts",
     "Itinerary",
+    "Keyword",
     "Layer",
     "Located",
     "Material",
@@ -135,6 +136,7 @@ __all__ = [
     "Motion",
     "NamedLaw",
     "Region",
+    "Restitution",
     "RestitutionTable",
     "SampledGuardsWarning",
     "Sensitivities",
@@ -176,6 +178,7 @@ __all__ = [
     "recorded",
     "reproduce",
     "reproduction_parts",
+    "restitution",
     "solve",
     "solve_many",
     "stack",
@@ -195,7 +198,7 @@ _MODULES = {
     "_compiled": "Compiled",
     "_derivatives": "Sensitivities",
     "_explorer": "Explorer explore",
-    "_laws": "NamedLaw laws",
+    "_laws": "Keyword NamedLaw Restitution laws restitution",
     "_native": "ComputationError",
     "_solutions": "DenseOutput Solution",
     "_systems": "Guard HybridSystem Mode",

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use stickslip_contact::{Contact, Damping, End, InvalidValue, Law, Normal};
+use stickslip_contact::{Contact, Damping, End, InvalidValue, Law, Normal, presets};
 
 use crate::engines::Engine;
 use crate::engines::error::CollisionError;
@@ -173,4 +173,134 @@ pub fn damping(law: Law, wanted: f64) -> Result<f64, RestitutionError> {
         }
     }
     Ok(0.5 * (low + high))
+}
+
+/// What it takes to have an ε_n, and what a particle code makes of it.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Restitution {
+    /// ε_n.
+    pub e_n: f64,
+    /// The scaled damping a of the law that has it.
+    pub damping: f64,
+    /// The damping ratio ζ, where ε_n does not depend on the velocity.
+    pub critical_damping_ratio: Option<f64>,
+    /// The keywords with which the code takes ε_n as an input.
+    pub keywords: Vec<Keyword>,
+}
+
+/// A keyword with which a particle code takes a coefficient of normal restitution.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Keyword {
+    /// The keyword.
+    pub keyword: &'static str,
+    /// Where its formula was read.
+    pub source: &'static str,
+    /// The scaled damping a that the code computes.
+    pub damping: f64,
+    /// ε_n of the law with this damping: what the code reaches without errors of time steps.
+    pub e_n: f64,
+}
+
+/// The formulas by which codes make a damping of ε_n.
+#[derive(Clone, Copy)]
+enum Formula {
+    /// 2ζ, the formula of linear forces.
+    Linear,
+    /// √5 ζ, that of Hertz' force with Tsuji's damping.
+    Hertz,
+    /// The polynomial of Tsuji's figure.
+    Polynomial,
+    /// √2 times that, for the effective mass.
+    EffectiveMass,
+}
+
+impl Formula {
+    fn damping(self, e_n: f64) -> f64 {
+        let log = -e_n.ln();
+        let ratio = log / PI.hypot(log);
+        match self {
+            Self::Linear => 2.0 * ratio,
+            Self::Hertz => 5.0_f64.sqrt() * ratio,
+            Self::Polynomial => {
+                let terms = [4.8218, -18.022, 27.467, -22.348, 11.087, -4.2783, 1.2728];
+                terms.into_iter().fold(0.0, |sum, term| sum * e_n + term)
+            }
+            Self::EffectiveMass => 2.0_f64.sqrt() * Self::Polynomial.damping(e_n),
+        }
+    }
+}
+
+/// The keywords of the law with this name, with their formulas and sources.
+fn keywords(name: &str) -> &'static [(&'static str, Formula, &'static str)] {
+    const LAMMPS: &str = "LAMMPS 22 Jul 2025, Update 4, as it runs: gran_sub_mod_damping.cpp";
+    const NEWER: &str = "LAMMPS, commit 07b704c: gran_sub_mod_damping.cpp";
+    const LIGGGHTS: &str = "LIGGGHTS-PUBLIC, commit 25fc396: normal_model_hooke.h, _hertz.h";
+    const MERCURY: &str = "MercuryDPM: LinearViscoelasticNormalSpecies.cc (commit 0841c35), \
+                           HertzianViscoelasticNormalSpecies.cc (commit 126c08f)";
+    const MFIX: &str = "MFiX (copy CurtinIDS/mfix, commit aa5da90): check_solids_dem.f";
+    const YADE: &str = "YADE (copy rohitkjohnedu/my_yade, commit 1677975): HertzMindlin.cpp, \
+                        ViscoelasticPM.cpp";
+    match name.split('/').collect::<Vec<_>>()[..] {
+        ["granular", "hertz", "tsuji", ..] => &[
+            ("damping tsuji", Formula::Polynomial, LAMMPS),
+            ("damping tsuji, newer", Formula::EffectiveMass, NEWER),
+            ("damping coeff_restitution", Formula::Hertz, LAMMPS),
+        ],
+        ["granular", "hooke", "tsuji", ..] => &[
+            ("damping tsuji", Formula::Polynomial, LAMMPS),
+            ("damping tsuji, newer", Formula::EffectiveMass, NEWER),
+            ("damping coeff_restitution", Formula::Linear, LAMMPS),
+        ],
+        ["liggghts", "hooke", ..] => &[("coefficientRestitution", Formula::Linear, LIGGGHTS)],
+        ["liggghts", "hertz", ..] => &[("coefficientRestitution", Formula::Hertz, LIGGGHTS)],
+        ["mercury", "LinearViscoelasticSlidingFriction"] => {
+            &[("setStiffnessAndRestitutionCoefficient", Formula::Linear, MERCURY)]
+        }
+        ["mercury", ..] => {
+            &[("setElasticModulusAndRestitutionCoefficient", Formula::Hertz, MERCURY)]
+        }
+        ["mfix", ..] => &[("DES_EN_INPUT", Formula::Linear, MFIX)],
+        ["yade", "MindlinPhys_Mindlin"] => &[("en", Formula::Hertz, YADE)],
+        ["yade", "ViscElPhys_Basic"] => &[("tc, en, et", Formula::Linear, YADE)],
+        _ => &[],
+    }
+}
+
+/// What it takes for the law with this name to have an ε_n, above 0 and at most 1, and what its
+/// code makes of ε_n as an input. `None` if no law has this name.
+///
+/// ```
+/// use stickslip_model::restitution;
+///
+/// // MFiX takes the formula of linear forces for Hertz' force too, and loses less than it should.
+/// let found = restitution::of("mfix/HERTZIAN", 0.8)?.ok_or("no such law")?;
+/// assert_eq!(found.keywords[0].keyword, "DES_EN_INPUT");
+/// assert!((found.keywords[0].e_n - 0.8192).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`RestitutionError`]: as [`damping`].
+pub fn of(name: &str, e_n: f64) -> Result<Option<Restitution>, RestitutionError> {
+    let Some(preset) = presets::find(name) else { return Ok(None) };
+    let law = preset.law;
+    let keywords = keywords(preset.name).iter().map(|&(keyword, formula, source)| {
+        let damping = formula.damping(e_n);
+        Ok(Keyword { keyword, source, damping, e_n: eps_n(law, damping)? })
+    });
+    let found = of_law(law, e_n)?;
+    let keywords = keywords.collect::<Result<_, RestitutionError>>()?;
+    Ok(Some(Restitution { keywords, ..found }))
+}
+
+/// As [`of`], for a law that may have no name, and without keywords.
+///
+/// # Errors
+/// [`RestitutionError`]: as [`damping`].
+pub fn of_law(law: Law, e_n: f64) -> Result<Restitution, RestitutionError> {
+    let damping = damping(law, e_n)?;
+    let critical_damping_ratio = critical_damping(law).map(|critical| damping / critical);
+    Ok(Restitution { e_n, damping, critical_damping_ratio, keywords: Vec::new() })
 }

@@ -40,6 +40,7 @@ mod settings;
 mod survey;
 
 use stickslip_model::restitution::RestitutionError;
+use stickslip_model::spheres::BodyPair;
 use stickslip_model::{CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
@@ -209,6 +210,20 @@ pub fn predicted(
     angles_rad.iter().map(predicted).collect()
 }
 
+impl Fit {
+    /// The two bodies with the values of the best minimum. `None` in scaled units.
+    ///
+    /// # Errors
+    /// [`FitError`]: they have no impact at the speed of the fit.
+    pub fn best_pair(&self, bodies: &Bodies) -> Result<Option<BodyPair>, FitError> {
+        let (Some(speed), Some(best)) = (self.speed_m_per_s, self.minima.first()) else {
+            return Ok(None);
+        };
+        let units = bodies.units(speed)?;
+        Ok(Some(bodies.with(&units, &best.values)))
+    }
+}
+
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
@@ -291,6 +306,12 @@ pub enum FitError {
         "{name} is free, but has no effect without damping; expected a law with damping, and eps_n below 1"
     )]
     Undamped {
+        /// The name.
+        name: &'static str,
+    },
+    /// The stiffness of a spring that is not there is free.
+    #[error("{name} is free, but the law has no spring; expected other free numbers")]
+    NoSpring {
         /// The name.
         name: &'static str,
     },

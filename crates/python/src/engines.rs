@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use pyo3::prelude::*;
 use serde_json::Value;
-use stickslip_model::{Engine, InvalidChoice, Law, presets};
+use stickslip_model::{Engine, InvalidChoice, Law, presets, restitution};
 use stickslip_solver::Statistics;
 
 use crate::failure::{bad_input, failed};
@@ -69,6 +69,17 @@ pub fn laws() -> PyResult<String> {
     };
     let entries: serde_json::Result<Vec<Value>> = presets::ALL.iter().map(entry).collect();
     Ok(Value::from(entries.map_err(failed)?).to_string())
+}
+
+/// Which damping has a coefficient of normal restitution, for a law with a name or as JSON, and
+/// what its code makes of the coefficient, as JSON.
+#[pyfunction]
+pub fn restitution(law: LawChoice, e_n: f64) -> PyResult<String> {
+    let found = match restitution::of(&law.0, e_n).map_err(bad_input)? {
+        Some(found) => found,
+        None => restitution::of_law(law.law()?.0, e_n).map_err(bad_input)?,
+    };
+    serde_json::to_string(&found).map_err(failed)
 }
 
 /// A result with the layout `schema`, as the JSON that the program prints.

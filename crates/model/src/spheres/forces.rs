@@ -16,6 +16,7 @@ use crate::restitution::{self, RestitutionError};
 /// F_n = ρ ξ^{3/2} + γ ξ^e ξ̇    (hertz)     viscoelastic or tsuji
 /// F_t = k_t ζ + r γ ξ^e g      (constant), |F_t| ≤ μ |F_n|
 /// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
+/// F_t = r γ ξ^e g              (without history)
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -158,6 +159,11 @@ impl Forces {
             }
         };
         let tangential = match law.tangential {
+            _ if !law.remembers() => {
+                unused(&quantity::MINDLIN_STIFFNESS, c.mindlin_stiffness_kg_per_s2_m0_5)?;
+                unused(&quantity::TANGENTIAL_STIFFNESS, c.tangential_stiffness_kg_per_s2)?;
+                None
+            }
             Tangential::Constant => {
                 unused(&quantity::MINDLIN_STIFFNESS, c.mindlin_stiffness_kg_per_s2_m0_5)?;
                 Some(required(&quantity::TANGENTIAL_STIFFNESS, c.tangential_stiffness_kg_per_s2)?)
@@ -186,7 +192,9 @@ impl Forces {
                 damping / units.damping_per_s
             }
         };
-        let tangential_stiffness_kg_per_s2 = self.tangential.unwrap_or(mindlin);
+        // Without a spring any stiffness will do.
+        let usual = if self.law.remembers() { mindlin } else { elastic };
+        let tangential_stiffness_kg_per_s2 = self.tangential.unwrap_or(usual);
         let friction = self.friction;
         (elastic, Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s })
     }

@@ -110,6 +110,30 @@ fn a_contact_without_history_is_that_of_another_program() {
     }
 }
 
+/// Laws without history, by a newer LAMMPS.
+#[test]
+fn contacts_without_history_are_those_of_lammps() {
+    let reference = file("lammps_2025");
+    let cases = reference["cases"].as_array().unwrap();
+    let mut names = BTreeSet::new();
+    for case in cases {
+        let number = |name: &str| case[name].as_f64().unwrap();
+        let name = case["law"].as_str().unwrap();
+        let preset = presets::find(name).unwrap();
+        let contact = Contact::new(1.0, number("psi"), number("damping"))
+            .and_then(|contact| contact.with_law(preset.law, number("tangential_damping")))
+            .unwrap();
+        let collision = collide(contact);
+        let errors = [
+            (collision.eps_t() - number("eps_t")).abs() - number("eps_t_error"),
+            (collision.eps_n - number("eps_n")).abs() - number("eps_n_error"),
+        ];
+        assert!(errors.iter().all(|error| *error < 2e-5), "{errors:?} {case}");
+        names.insert(preset.name);
+    }
+    assert_eq!((cases.len(), names.len()), (100, 5));
+}
+
 /// In plain time, with other equations, steps and searches for switches.
 #[test]
 fn other_tests_agree_with_plain_time() {
