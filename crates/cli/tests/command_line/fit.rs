@@ -194,6 +194,7 @@ fn bad_data_and_options_are_refused() {
             "centre_rebound_angle_rad = -1.6 is out of range; expected an angle between -π/2",
         ),
         (data, "--law nonsense", "is neither a file nor a name"),
+        (data, "--law gran/hooke", "kappa is free, but the law has no spring"),
         (data, "--free kappa,k_t --mu 0.2", "kappa is free twice"),
         (data, "--free kappa", "--mu is missing"),
         (data, "--free kappa,mu --mu 0", "expected"),
