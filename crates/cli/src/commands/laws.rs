@@ -117,21 +117,16 @@ fn restitutions(name: Option<&str>, e_n: f64, format: Format) -> Result<(), Fail
         Format::Json if name.is_some() => json::lines(out, &found.first()),
         Format::Json => json::lines(out, &found),
         Format::Table => {
-            writeln!(
-                out,
-                "{:<44} {:>9} {:>9}  keyword: e_n that the code reaches",
-                "e_n = ".to_owned() + &e_n.to_string(),
-                "damping a",
-                "ratio ζ"
-            )?;
+            let title = format!("e_n = {e_n}");
+            writeln!(out, "{title:<46} {:>9} {:>9}  keyword: e_n reached", "damping a", "ratio ζ")?;
             for OfLaw { name, restitution } in &found {
                 let ratio = restitution.critical_damping_ratio;
                 let ratio = ratio.map_or_else(String::new, |ratio| format!("{ratio:.6}"));
-                write!(out, "{name:<44} {:>9.6} {ratio:>9}", restitution.damping)?;
                 let reached = |it: &Keyword| format!("{}: {:.4}", it.keyword, it.e_n);
                 let reached: Vec<_> = restitution.keywords.iter().map(reached).collect();
-                let separator = if reached.is_empty() { "" } else { "  " };
-                writeln!(out, "{separator}{}", reached.join("; "))?;
+                let (damping, reached) = (restitution.damping, reached.join("; "));
+                let line = format!("{name:<46} {damping:>9.6} {ratio:>9}  {reached}");
+                writeln!(out, "{}", line.trim_end())?;
             }
             Ok(())
         }
