@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use pyo3::prelude::*;
 use serde_json::Value;
-use stickslip_model::{Engine, InvalidChoice, Law, presets, restitution};
+use stickslip_model::{Engine, InvalidChoice, Law, presets};
 use stickslip_solver::Statistics;
 
 use crate::failure::{bad_input, failed};
@@ -75,9 +75,9 @@ pub fn laws() -> PyResult<String> {
 /// what its code makes of the coefficient, as JSON.
 #[pyfunction]
 pub fn restitution(law: LawChoice, e_n: f64) -> PyResult<String> {
-    let found = match restitution::of(&law.0, e_n).map_err(bad_input)? {
+    let found = match stickslip_model::restitution::of(&law.0, e_n).map_err(bad_input)? {
         Some(found) => found,
-        None => restitution::of_law(law.law()?.0, e_n).map_err(bad_input)?,
+        None => stickslip_model::restitution::of_law(law.law()?.0, e_n).map_err(bad_input)?,
     };
     serde_json::to_string(&found).map_err(failed)
 }
