@@ -244,7 +244,7 @@ impl Law {
     }
 
     /// The part of the tangential damping b that Coulomb's limit holds for.
-    pub(crate) fn tested_damping(&self, tangential_damping: f64) -> f64 {
+    pub(crate) fn tested_damping(self, tangential_damping: f64) -> f64 {
         let tested = self.coulomb_test == CoulombTest::Total || !self.remembers();
         if tested { tangential_damping } else { 0.0 }
     }

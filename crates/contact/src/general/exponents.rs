@@ -15,6 +15,7 @@ use crate::law::{Damping, HistoryOf, Law, Normal, Tangential};
 ///
 /// where h is the history, scaled by a power of x: what is rescaled while the overlap falls is
 /// constant then over √x. Without damping d = p and F = u^p.
+#[expect(clippy::struct_excessive_bools, reason = "each leaves out a term of the equations")]
 #[derive(Clone, Copy, Debug)]
 pub struct Exponents {
     /// n.
