@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from stickslip._compiled import Compiled
     from stickslip._derivatives import Sensitivities
     from stickslip._explorer import Explorer, explore
-    from stickslip._laws import NamedLaw, laws
+    from stickslip._laws import Keyword, NamedLaw, Restitution, laws, restitution
     from stickslip._native import ComputationError
     from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialCurve, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
@@ -129,6 +129,7 @@ __all__ = [
     "HybridSystem",
     "Impacts",
     "Itinerary",
+    "Keyword",
     "Layer",
     "Located",
     "Material",
@@ -139,6 +140,7 @@ __all__ = [
     "Orbit",
     "OrbitSegment",
     "Region",
+    "Restitution",
     "RestitutionTable",
     "SampledGuardsWarning",
     "Sensitivities",
@@ -182,6 +184,7 @@ __all__ = [
     "recorded",
     "reproduce",
     "reproduction_parts",
+    "restitution",
     "solve",
     "solve_many",
     "stack",
@@ -201,7 +204,7 @@ _MODULES = {
     "_compiled": "Compiled",
     "_derivatives": "Sensitivities",
     "_explorer": "Explorer explore",
-    "_laws": "NamedLaw laws",
+    "_laws": "Keyword NamedLaw Restitution laws restitution",
     "_native": "ComputationError",
     "_orbits": "Branch Orbit OrbitSegment SpecialCurve SpecialOrbit",
     "_solutions": "DenseOutput Solution",

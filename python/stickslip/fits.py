@@ -91,6 +91,17 @@ class Fit(Tabular):
         """
         return _pictures.fit(self, ax, points)
 
+    def input(self, code: str, bodies: Bodies) -> str:
+        """The lines with which a particle code computes the contacts of the best fit.
+
+        code: "lammps", "liggghts", "yade", "mfix" or "mercury". bodies: those of the fit. A
+        ValueError says why if the code does not have the law, or not with these constants.
+        """
+        if isinstance(self._native, Kept):
+            raise ValueError("a fit that was stored has no bodies; expected one that was made here")
+        found: str = self._native.input(bodies._pair, code)
+        return found
+
     def picture(self) -> str | None:
         """Data, fit and the boundaries of its switches over the angle as an SVG document."""
         found: str | None = self._native.picture()

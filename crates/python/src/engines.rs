@@ -72,6 +72,17 @@ pub fn laws() -> PyResult<String> {
     Ok(Value::from(entries.map_err(failed)?).to_string())
 }
 
+/// Which damping has a coefficient of normal restitution, for a law with a name or as JSON, and
+/// what its code makes of the coefficient, as JSON.
+#[pyfunction]
+pub fn restitution(law: LawChoice, e_n: f64) -> PyResult<String> {
+    let found = match stickslip_model::restitution::of(&law.0, e_n).map_err(bad_input)? {
+        Some(found) => found,
+        None => stickslip_model::restitution::of_law(law.law()?.0, e_n).map_err(bad_input)?,
+    };
+    serde_json::to_string(&found).map_err(failed)
+}
+
 /// A result with the layout `schema`, as the JSON that the program prints.
 pub fn document(
     schema: &str,
