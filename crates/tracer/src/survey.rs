@@ -6,7 +6,10 @@ use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::TraceOptions;
 use crate::regions::finding::SubdivisionError;
+use crate::regions::verify::report::VerifyError;
 use crate::tracing::extrema::Extremum;
+use crate::tracing::margins::Lines;
+use crate::tracing::network::NetworkOf;
 use crate::tracing::tracer::Tracer;
 use crate::tracing::tracer::state::State;
 use crate::watch::Watch;
@@ -128,7 +131,7 @@ impl<E> Surveyor<'_, E> {
     {
         let mut tracer = Tracer::new(family, window, &self.options.trace)?;
         tracer.require_few(&self.executor, &self.watch)?;
-        self.finish(&Own(family), &mut tracer, Survey::BEGINNING)
+        Ok(self.finish(&Own(family), &mut tracer, Survey::BEGINNING)?.0)
     }
 
     /// As [`Self::atlas`], for an atlas with other labels and margins than the family's, and other
@@ -150,8 +153,12 @@ impl<E> Surveyor<'_, E> {
             let surveyor = Surveyor { options: AtlasOptions { trace, ..self.options }, ..*self };
             let mut tracer = Tracer::new(draft.family(), window, &trace)?;
             tracer.require_few(&surveyor.executor, &surveyor.watch)?;
-            let atlas = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
-            Ok((atlas, tracer.extrema()?))
+            let (atlas, lines) = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
+            let extrema = match lines {
+                Some(mut lines) => lines.extrema()?,
+                None => tracer.extrema()?,
+            };
+            Ok((atlas, extrema))
         };
         let first: Result<_, DraftError<D>> = traced(self.options.trace);
         let first = first?;
@@ -189,27 +196,46 @@ impl<E> Surveyor<'_, E> {
         let (round, window) = (atlas.rounds, *atlas.plane.window());
         let result = unfinished.brackets.is_some().then_some(atlas);
         let mut tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
-        self.finish(&Own(family), &mut tracer, Survey { result, round, finished: false })
+        Ok(self.finish(&Own(family), &mut tracer, Survey { result, round, finished: false })?.0)
     }
 
     /// The atlas of a tracer, which may have begun: the tracer explores, the regions are verified,
     /// and the tracer looks again where this finds that something is missing, as long as curves are
     /// found and this comes closer: where no margins tell what is missing, each look only leaves
     /// more places.
-    fn finish<D: Draft>(
+    ///
+    /// If something is in doubt then, the window is traced by margins. If nothing is in doubt after
+    /// that, this is the result, with the lines of the margins.
+    fn finish<'f, D: Draft>(
         &self,
-        draft: &D,
+        draft: &'f D,
         tracer: &mut Tracer<'_, D::Family>,
         begun: Survey<DraftedOf<D>>,
-    ) -> Result<DraftedOf<D>, DraftError<D>>
+    ) -> Result<(DraftedOf<D>, Option<Lines<'f, D::Family>>), DraftError<D>>
     where
         E: Executor<D::Family>,
     {
-        let Survey { result, round, finished } = self.survey(draft, tracer, begun)?;
+        // ZZ
+        if std::env::var("ZZ_ONLY").is_ok() {
+            let found = self.by_margins(draft, &tracer.window())?;
+            return Ok(found.map(|(a, l)| (a, Some(l))).expect("not cancelled"));
+        }
+        let Survey { result, round, mut finished } = self.survey(draft, tracer, begun)?;
         let mut atlas = match result {
             Some(atlas) => atlas,
-            None => self.unverified(draft, tracer, round)?.0,
+            None => self.unverified(draft, tracer.network(), round)?.0,
         };
+        if finished && !atlas.agrees() {
+            match self.by_margins(draft, &tracer.window())? {
+                Some((other, lines)) if other.agrees() => return Ok((other, Some(lines))),
+                Some(_) => {}
+                None => {
+                    finished = false;
+                    // There is nothing left to look for but by margins.
+                    tracer.begin_again(Vec::new());
+                }
+            }
+        }
         if !finished {
             let State { network, uncertainties, suspects, probed, stage, brackets } =
                 tracer.state();
@@ -217,19 +243,75 @@ impl<E> Surveyor<'_, E> {
             atlas.unfinished =
                 Some(Box::new(State { network, uncertainties, suspects, probed, stage, brackets }));
         }
-        Ok(atlas)
+        Ok((atlas, None))
     }
 
-    /// The regions of what a tracer has found, and the options that fit them.
+    /// The atlas of the zero sets of margins, which are searched for again where the verification
+    /// finds that one is missing. `None` if the watch cancels.
+    #[expect(clippy::type_complexity, reason = "an atlas and the lines of it")]
+    fn by_margins<'f, D: Draft>(
+        &self,
+        draft: &'f D,
+        window: &Window,
+    ) -> Result<Option<(DraftedOf<D>, Lines<'f, D::Family>)>, DraftError<D>>
+    where
+        E: Executor<D::Family>,
+    {
+        let mut lines = Lines::new(draft.family(), window, &self.options.trace)?;
+        if !lines.explore(&self.executor, &self.watch)? {
+            return Ok(None);
+        }
+        let mut round = 1;
+        loop {
+            let (mut atlas, options) = self.unverified(draft, lines.network()?, round)?;
+            if !self.verify(draft, &mut atlas, &options)? {
+                return Ok(None);
+            }
+            let brackets = atlas.verification.brackets();
+            // ZZ
+            if std::env::var("ZZ").is_ok() {
+                let s = &atlas.statistics;
+                eprintln!("round {round}: {} regions, {} curves, {} unresolved, {} findings, {} mismatches, {} brackets, runs {} {}",
+                    atlas.plane.regions().len(), atlas.plane.curves().len(), atlas.unresolved.len(), atlas.verification.findings,
+                    atlas.verification.mismatches.len(), brackets.len(), s.free_runs, s.prescribed_runs);
+                for f in atlas.plane.findings().iter().take(8) { eprintln!("   {f}"); }
+                for m in atlas.verification.mismatches.iter().take(6) { eprintln!("   {:?} {:?}", m.checkpoint, m.agreeing); }
+            }
+            if brackets.is_empty() || round >= self.options.rounds {
+                return Ok(Some((atlas, lines)));
+            }
+            match lines.look(&brackets, &self.watch)? {
+                None => return Ok(None),
+                Some(false) => return Ok(Some((atlas, lines))),
+                Some(true) => round += 1,
+            }
+        }
+    }
+
+    /// The regions of what was found, and the options that fit them.
     fn unverified<D: Draft>(
         &self,
         draft: &D,
-        tracer: &Tracer<'_, D::Family>,
+        network: NetworkOf<D::Family>,
         round: usize,
     ) -> Result<(DraftedOf<D>, AtlasOptions), SubdivisionError> {
-        let network = draft.drawn(tracer.network());
+        let network = draft.drawn(network);
         let options = draft.fitted(&self.options, &network.curves);
         Ok((Atlas::unverified(network, &options, round)?, options))
+    }
+
+    /// Verifies an atlas. Returns `false` if the watch cancels.
+    fn verify<D: Draft>(
+        &self,
+        draft: &D,
+        atlas: &mut DraftedOf<D>,
+        options: &AtlasOptions,
+    ) -> Result<bool, VerifyError>
+    where
+        E: Executor<D::Family>,
+    {
+        let labels = |portion: &[Point]| draft.checks(&self.executor, portion);
+        atlas.verify(options, |points: &[Point]| self.watch.in_portions(points, labels))
     }
 
     /// The rounds themselves.
@@ -258,10 +340,8 @@ impl<E> Surveyor<'_, E> {
                 }
                 round += 1;
             }
-            let (mut atlas, options) = self.unverified(draft, tracer, round)?;
-            let labels = |portion: &[Point]| draft.checks(&self.executor, portion);
-            let labels = |points: &[Point]| self.watch.in_portions(points, labels);
-            if !atlas.verify(&options, labels)? {
+            let (mut atlas, options) = self.unverified(draft, tracer.network(), round)?;
+            if !self.verify(draft, &mut atlas, &options)? {
                 return Ok(Survey { result: None, round, finished: false });
             }
             let brackets = atlas.verification.brackets();
