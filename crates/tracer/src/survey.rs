@@ -109,7 +109,7 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
     }
 }
 
-impl<E> Surveyor<'_, E> {
+impl<'w, E> Surveyor<'w, E> {
     /// Traces, subdivides and verifies a family in a window, and looks again where the verification
     /// finds other labels, until it finds none or nothing new comes.
     ///
@@ -211,15 +211,10 @@ impl<E> Surveyor<'_, E> {
         draft: &'f D,
         tracer: &mut Tracer<'_, D::Family>,
         begun: Survey<DraftedOf<D>>,
-    ) -> Result<(DraftedOf<D>, Option<Lines<'f, D::Family>>), DraftError<D>>
+    ) -> Result<(DraftedOf<D>, Option<Lines<'f, 'w, D::Family>>), DraftError<D>>
     where
         E: Executor<D::Family>,
     {
-        // ZZ
-        if std::env::var("ZZ_ONLY").is_ok() {
-            let found = self.by_margins(draft, &tracer.window())?;
-            return Ok(found.map(|(a, l)| (a, Some(l))).expect("not cancelled"));
-        }
         let Survey { result, round, mut finished } = self.survey(draft, tracer, begun)?;
         let mut atlas = match result {
             Some(atlas) => atlas,
@@ -253,12 +248,12 @@ impl<E> Surveyor<'_, E> {
         &self,
         draft: &'f D,
         window: &Window,
-    ) -> Result<Option<(DraftedOf<D>, Lines<'f, D::Family>)>, DraftError<D>>
+    ) -> Result<Option<(DraftedOf<D>, Lines<'f, 'w, D::Family>)>, DraftError<D>>
     where
         E: Executor<D::Family>,
     {
-        let mut lines = Lines::new(draft.family(), window, &self.options.trace)?;
-        if !lines.explore(&self.executor, &self.watch)? {
+        let mut lines = Lines::new(draft.family(), window, &self.options.trace, self.watch)?;
+        if !lines.explore(&self.executor)? {
             return Ok(None);
         }
         let mut round = 1;
@@ -268,19 +263,10 @@ impl<E> Surveyor<'_, E> {
                 return Ok(None);
             }
             let brackets = atlas.verification.brackets();
-            // ZZ
-            if std::env::var("ZZ").is_ok() {
-                let s = &atlas.statistics;
-                eprintln!("round {round}: {} regions, {} curves, {} unresolved, {} findings, {} mismatches, {} brackets, runs {} {}",
-                    atlas.plane.regions().len(), atlas.plane.curves().len(), atlas.unresolved.len(), atlas.verification.findings,
-                    atlas.verification.mismatches.len(), brackets.len(), s.free_runs, s.prescribed_runs);
-                for f in atlas.plane.findings().iter().take(8) { eprintln!("   {f}"); }
-                for m in atlas.verification.mismatches.iter().take(6) { eprintln!("   {:?} {:?}", m.checkpoint, m.agreeing); }
-            }
             if brackets.is_empty() || round >= self.options.rounds {
                 return Ok(Some((atlas, lines)));
             }
-            match lines.look(&brackets, &self.watch)? {
+            match lines.look(&brackets)? {
                 None => return Ok(None),
                 Some(false) => return Ok(Some((atlas, lines))),
                 Some(true) => round += 1,

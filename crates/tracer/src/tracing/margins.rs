@@ -22,7 +22,6 @@ use crate::curve::{Curve, Vertex};
 use crate::executor::Executor;
 use crate::family::Family;
 use crate::options::TraceOptions;
-use crate::tracing::cut::cut;
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::margins::line::{Line, Reach};
 use crate::tracing::network::{NetworkOf, TraceStatistics};
@@ -40,10 +39,10 @@ const ROUNDS: usize = 8;
 const EDGE: u32 = 5;
 
 /// A search for the zero sets of margins in a window.
-pub(crate) struct Lines<'f, F: Family> {
+pub(crate) struct Lines<'f, 'w, F: Family> {
     runs: Runs<'f, F>,
-    /// The window of the caller. The window of the runs is larger.
-    window: Window,
+    /// While it cancels, what is found is not whole.
+    watch: Watch<'w>,
     lines: Vec<Line<F::Margin>>,
     /// The number of lines that were found, or found to be longer.
     changes: usize,
@@ -62,13 +61,17 @@ pub(crate) struct Arranged<F: Family> {
     pub doubts: Vec<Point>,
 }
 
-impl<'f, F: Family> Lines<'f, F> {
-    /// A search that has found nothing yet.
-    pub fn new(family: &'f F, window: &Window, options: &TraceOptions) -> Traced<Self, F> {
-        let outer = window.with_room(options.beyond);
+impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
+    /// A search that has found nothing yet. Lines end on the edges of the window.
+    pub fn new(
+        family: &'f F,
+        window: &Window,
+        options: &TraceOptions,
+        watch: Watch<'w>,
+    ) -> Traced<Self, F> {
         Ok(Self {
-            runs: Runs::new(family, *window, *options)?.within(outer),
-            window: *window,
+            runs: Runs::new(family, *window, *options)?,
+            watch,
             lines: Vec::new(),
             changes: 0,
             labels: HashMap::new(),
@@ -78,10 +81,10 @@ impl<'f, F: Family> Lines<'f, F> {
     }
 
     /// Searches along the edges of a lattice, and around all places where lines meet. Returns
-    /// `false` if `watch` cancels.
-    pub fn explore<E: Executor<F>>(&mut self, executor: &E, watch: &Watch<'_>) -> Traced<bool, F> {
+    /// `false` if the watch cancels.
+    pub fn explore<E: Executor<F>>(&mut self, executor: &E) -> Traced<bool, F> {
         let size = self.runs.options.cells + 1;
-        let Some(samples) = self.lattice(executor, watch)? else { return Ok(false) };
+        let Some(samples) = self.lattice(executor)? else { return Ok(false) };
         let edges = (0..size * size).flat_map(|index| {
             let (column, row) = (index / size, index % size);
             let up = (row + 1 < size).then_some([index, index + 1]);
@@ -89,21 +92,22 @@ impl<'f, F: Family> Lines<'f, F> {
             up.into_iter().chain(right)
         });
         let edges: Vec<[usize; 2]> = edges.collect();
-        watch.report(Progress::Begin { steps: edges.len() + samples.len() });
+        self.watch.report(Progress::Begin { steps: edges.len() + samples.len() });
         for [one, other] in edges {
-            if watch.is_cancelled() {
+            if self.watch.is_cancelled() {
                 return Ok(false);
             }
             let ends = [one, other].map(|index| [index / size, index % size]);
             let along = |axis: usize| ends[0][axis] == ends[1][axis];
             let outermost = |axis: usize| ends[0][axis] == 0 || ends[0][axis] + 1 == size;
-            let divisions = if (0..2).any(|axis| along(axis) && outermost(axis)) { EDGE } else { 0 };
+            let divisions =
+                if (0..2).any(|axis| along(axis) && outermost(axis)) { EDGE } else { 0 };
             self.divide(&samples[one], &samples[other], divisions)?;
-            watch.report(Progress::Advance { steps: 1 });
+            self.watch.report(Progress::Advance { steps: 1 });
         }
         let cell = self.runs.window.extent() / self.runs.options.cells as f64;
         for index in 0..samples.len() {
-            if watch.is_cancelled() {
+            if self.watch.is_cancelled() {
                 return Ok(false);
             }
             let is_known = |[a, b]: &[Point; 2]| self.lines.iter().any(|line| line.crosses(a, b));
@@ -111,20 +115,20 @@ impl<'f, F: Family> Lines<'f, F> {
             for ends in pending {
                 self.search(ends)?;
             }
-            watch.report(Progress::Advance { steps: 1 });
+            self.watch.report(Progress::Advance { steps: 1 });
         }
-        self.complete(watch)
+        self.complete()
     }
 
     /// Searches between pairs of places where runs differ. Returns whether something was found;
-    /// `None` if `watch` cancels.
-    pub fn look(&mut self, brackets: &[[Point; 2]], watch: &Watch<'_>) -> Traced<Option<bool>, F> {
+    /// `None` if the watch cancels.
+    pub fn look(&mut self, brackets: &[[Point; 2]]) -> Traced<Option<bool>, F> {
         /// More brackets show nothing new.
         const MOST: usize = 200;
         let before = self.changes;
-        watch.report(Progress::Begin { steps: brackets.len().min(MOST) });
+        self.watch.report(Progress::Begin { steps: brackets.len().min(MOST) });
         for &[a, b] in brackets.iter().take(MOST) {
-            if watch.is_cancelled() {
+            if self.watch.is_cancelled() {
                 return Ok(None);
             }
             let seed = Seed::between(&self.runs, &[a, b])?;
@@ -135,10 +139,10 @@ impl<'f, F: Family> Lines<'f, F> {
             if !begun {
                 self.search([a, b])?;
             }
-            watch.report(Progress::Advance { steps: 1 });
+            self.watch.report(Progress::Advance { steps: 1 });
         }
         let found = self.changes != before;
-        Ok(self.complete(watch)?.then_some(found))
+        Ok(self.complete()?.then_some(found))
     }
 
     /// The network of the lines that runs see.
@@ -147,16 +151,10 @@ impl<'f, F: Family> Lines<'f, F> {
         let Arranged { curves, vertices, .. } = self.arranged()?;
         let [free_runs, prescribed_runs] = self.runs.counts();
         let nodes = self.lines.iter().map(|line| line.nodes.len()).sum();
-        let statistics = TraceStatistics {
-            free_runs,
-            prescribed_runs,
-            nodes,
-            rejected: 0,
-            seeds: self.seeds,
-        };
+        let statistics =
+            TraceStatistics { free_runs, prescribed_runs, nodes, rejected: 0, seeds: self.seeds };
         let window = self.runs.window;
-        let network = NetworkOf::<F> { window, curves, vertices, statistics, unresolved };
-        Ok(cut(&self.runs.aside(), &network, &self.window))
+        Ok(NetworkOf::<F> { window, curves, vertices, statistics, unresolved })
     }
 
     /// The places where curves are extremal in a coordinate.
@@ -166,11 +164,7 @@ impl<'f, F: Family> Lines<'f, F> {
     }
 
     /// The free runs of a lattice whose first and last places lie just inside the edges, in columns.
-    fn lattice<E: Executor<F>>(
-        &self,
-        executor: &E,
-        watch: &Watch<'_>,
-    ) -> Traced<Option<Vec<Sampled<F>>>, F> {
+    fn lattice<E: Executor<F>>(&self, executor: &E) -> Traced<Option<Vec<Sampled<F>>>, F> {
         let cells = self.runs.options.cells;
         let inset = Point::repeat(self.runs.lengths.half);
         let low = self.runs.window.low + inset;
@@ -181,7 +175,7 @@ impl<'f, F: Family> Lines<'f, F> {
         };
         let points: Vec<Point> = (0..(cells + 1) * (cells + 1)).map(place).collect();
         let free = |portion: &[Point]| executor.free_runs(self.runs.family(), portion);
-        let Some(found) = watch.in_portions(&points, free) else { return Ok(None) };
+        let Some(found) = self.watch.in_portions(&points, free) else { return Ok(None) };
         self.runs.count_free(points.len());
         let found = points.into_iter().zip(found);
         let found = found.map(|(point, run)| Ok((point, checked::<F>(&point, run)?)));
@@ -189,8 +183,8 @@ impl<'f, F: Family> Lines<'f, F> {
     }
 
     /// Looks around the places where lines meet, and beside their ends, until nothing new is found.
-    /// Returns `false` if `watch` cancels.
-    fn complete(&mut self, watch: &Watch<'_>) -> Traced<bool, F> {
+    /// Returns `false` if the watch cancels.
+    fn complete(&mut self) -> Traced<bool, F> {
         for _ in 0..ROUNDS {
             let before = self.changes;
             let Arranged { vertices, doubts, .. } = self.arranged()?;
@@ -202,14 +196,14 @@ impl<'f, F: Family> Lines<'f, F> {
             let lost: Vec<[bool; 2]> = self.lines.iter().map(lost).collect();
             for (index, ends) in lost.into_iter().enumerate() {
                 for (end, _) in ends.into_iter().enumerate().filter(|(_, lost)| *lost) {
-                    if watch.is_cancelled() {
+                    if self.watch.is_cancelled() {
                         return Ok(false);
                     }
                     self.look_beside(index, end)?;
                 }
             }
             for place in places {
-                if watch.is_cancelled() {
+                if self.watch.is_cancelled() {
                     return Ok(false);
                 }
                 self.look_around(&place)?;
@@ -218,7 +212,7 @@ impl<'f, F: Family> Lines<'f, F> {
                 break;
             }
         }
-        Ok(true)
+        Ok(!self.watch.is_cancelled())
     }
 
     /// Searches between two places, in parts if the run in their middle differs from what the runs
@@ -306,3 +300,6 @@ impl<'f, F: Family> Lines<'f, F> {
         place.sup(&self.runs.window.low).inf(&self.runs.window.high)
     }
 }
+
+#[cfg(test)]
+mod tests;

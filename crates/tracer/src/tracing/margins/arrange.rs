@@ -10,9 +10,8 @@ use crate::tracing::margins::parts::Part;
 use crate::tracing::margins::{Arranged, Lines};
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
-use crate::window::Point;
 
-impl<F: Family> Lines<'_, F> {
+impl<F: Family> Lines<'_, '_, F> {
     /// The lines that could not be followed to their end, or not at all.
     pub(super) fn unfollowed(&self) -> Vec<Unresolved<F::Label>> {
         let limit = |line: &Line<F::Margin>| {
@@ -48,16 +47,6 @@ impl<F: Family> Lines<'_, F> {
         for [index, end] in self.open_ends() {
             let vertex = self.end_vertex(index, end, &mut vertices)?;
             cuts[index].push(Cut { place: self.lines[index].end(end), vertex });
-        }
-        // ZZ
-        if std::env::var("ZZL").is_ok() {
-            eprintln!("== {} lines", self.lines.len());
-            for (i, line) in self.lines.iter().enumerate() {
-                eprintln!("line {i} {} nodes {:?} {:.9} {:.9} -> {:.9} {:.9}  {}", line.nodes.len(), line.ends, line.tip(0).x, line.tip(0).y, line.tip(1).x, line.tip(1).y, zz(&line.margin));
-            }
-            for (i, v) in vertices.iter().enumerate() { eprintln!("vertex {i} {:?} {:.11} {:.11} lines {:?}", v.kind, v.point.x, v.point.y,
-                self.lines.iter().enumerate().filter_map(|(k, l)| l.near(&v.point, 1e-7).map(|n| (k, format!("{:.0e}", n.1)))).collect::<Vec<_>>()); }
-            for (i, c) in cuts.iter().enumerate() { for c in c { let d = (self.lines[i].at(c.place) - vertices[c.vertex].point).norm(); if d > 1e-11 { eprintln!("   end of {i} at {:?} led to {} by {d:.1e}", c.place, c.vertex); } } }
         }
         let reach = 2.0 * self.runs.lengths.same;
         for (vertex, it) in vertices.iter().enumerate() {
@@ -168,12 +157,4 @@ impl<F: Family> Lines<'_, F> {
         }
         parts
     }
-}
-
-// ZZ
-fn zz<M: std::fmt::Debug>(m: &M) -> String {
-    let t = format!("{m:?}").replace("Exit { guard: ", "").replace("way: Falling, ", "").replace(", branch: None", "").replace("part: Hint(0.0)", "");
-    let mut out = String::new(); let mut rest = t.as_str();
-    while let Some(k) = rest.find("after: Hint(") { out.push_str(&rest[..k]); rest = &rest[k + 12..]; let e = rest.find(')').unwrap_or(0); rest = &rest[e + 1..]; }
-    out.push_str(rest); out
 }

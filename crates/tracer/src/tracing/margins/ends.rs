@@ -8,7 +8,7 @@ use crate::tracing::margins::line::{Place, Reach};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
-impl<F: Family> Lines<'_, F> {
+impl<F: Family> Lines<'_, '_, F> {
     /// The ends of lines inside the window, each a line and 0 or 1. Those that lie on other lines
     /// come first: where these end, lines end that were lost farther away.
     pub(super) fn open_ends(&self) -> Vec<[usize; 2]> {
@@ -121,6 +121,11 @@ impl<F: Family> Lines<'_, F> {
             let apart = |point: &Point| passing.distance(point, 10.0 * lengths.close);
             let Some(close) = apart(&tip) else { continue };
             if close >= lengths.half || close <= lengths.least {
+                continue;
+            }
+            // A line that does not touch it is lost right before it.
+            let here = vertices.iter().any(|it| (it.point - tip).norm() < 10.0 * close);
+            if here {
                 continue;
             }
             let inwards = (0..=last).map(|step| if end == 0 { step } else { last - step });

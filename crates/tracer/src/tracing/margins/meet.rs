@@ -33,8 +33,7 @@ pub(super) fn crossings<M: Clone>(
                 crossing.lines == lines && (crossing.point - point).norm() < lengths.solved
             });
             if !known {
-                let places =
-                    [Place { piece: one.1, theta: s }, Place { piece: other.1, theta: t }];
+                let places = [Place { piece: one.1, theta: s }, Place { piece: other.1, theta: t }];
                 found.push(Crossing { lines, places, point });
             }
         }
@@ -125,9 +124,8 @@ impl Meeting<'_> {
         const DEEPEST: u32 = 60;
         let error = 0.1 * self.lengths.solved;
         let ([low, high], [least, most]) = (one.cubic.bounds(), other.cubic.bounds());
-        let apart = (0..2).any(|axis| {
-            low[axis] > most[axis] + error || least[axis] > high[axis] + error
-        });
+        let apart =
+            (0..2).any(|axis| low[axis] > most[axis] + error || least[axis] > high[axis] + error);
         if apart || self.left == 0 || depth > DEEPEST {
             return;
         }
@@ -178,9 +176,8 @@ impl Meeting<'_> {
         let slack = self.lengths.same;
         let on = |x: f64, length: f64| x * length >= -slack && (x - 1.0) * length <= slack;
         if on(s, length) && on(t, width) {
-            let place = |part: &Part, x: f64| {
-                (part.from + (part.to - part.from) * x).clamp(0.0, 1.0)
-            };
+            let place =
+                |part: &Part, x: f64| (part.from + (part.to - part.from) * x).clamp(0.0, 1.0);
             self.found.push([place(one, s), place(other, t)]);
         }
     }

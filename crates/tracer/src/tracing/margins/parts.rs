@@ -9,6 +9,9 @@ use crate::tracing::margins::{Arranged, Lines};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
+/// Where parts are looked at, in parts of their length.
+const SHARES: [f64; 7] = [0.5, 0.3, 0.7, 0.15, 0.85, 0.06, 0.94];
+
 /// A part of a line.
 #[derive(Clone, Copy)]
 pub(super) struct Part {
@@ -60,7 +63,7 @@ struct Seen<L> {
     sides: [L; 2],
 }
 
-impl<F: Family> Lines<'_, F> {
+impl<F: Family> Lines<'_, '_, F> {
     /// The curves that runs see of the parts, and their vertices.
     pub(super) fn seen(
         &mut self,
@@ -68,14 +71,30 @@ impl<F: Family> Lines<'_, F> {
         vertices: Vec<Vertex<F::Margin>>,
     ) -> Traced<Arranged<F>, F> {
         let mut doubts = Vec::new();
-        let mut seen: Vec<Seen<F::Label>> = Vec::new();
+        let mut all = Vec::new();
         for part in parts {
+            if self.watch.is_cancelled() {
+                break;
+            }
             let sides = self.sides(part, &mut doubts)?;
-            if std::env::var("ZZL").is_ok() { eprintln!("  part of {} {:?} length {:.1e} {:?}", part.line, part.cuts.map(|c| c.map(|c| c.vertex)), part.length(&self.lines[part.line]), sides); }
-            if sides[0] != sides[1] && !self.is_twin(part, &seen) {
-                seen.push(Seen { part: *part, sides });
+            if sides[0] != sides[1] {
+                all.push((
+                    part.length(&self.lines[part.line]),
+                    all.len(),
+                    Seen { part: *part, sides },
+                ));
             }
         }
+        // Shorter parts may run along longer ones.
+        all.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let mut seen: Vec<(usize, Seen<F::Label>)> = Vec::new();
+        for (_, order, next) in all {
+            if !self.is_twin(&next, &seen) {
+                seen.push((order, next));
+            }
+        }
+        seen.sort_by_key(|(order, _)| *order);
+        let seen: Vec<Seen<F::Label>> = seen.into_iter().map(|(_, seen)| seen).collect();
         let degrees = degrees(&seen, vertices.len());
         let seen = self.joined(seen, &degrees);
         let degrees = self::degrees(&seen, vertices.len());
@@ -101,9 +120,8 @@ impl<F: Family> Lines<'_, F> {
             *ends = ends.map(|vertex| numbers[vertex]);
         }
         for (index, vertex) in kept.iter_mut().enumerate() {
-            let arrive = curves.iter().filter(|curve| {
-                curve.ends.is_some_and(|ends| ends.contains(&index))
-            });
+            let arrive =
+                curves.iter().filter(|curve| curve.ends.is_some_and(|ends| ends.contains(&index)));
             vertex.margins.extend(arrive.map(|curve| curve.margin.clone()));
             vertex.margins.sort();
             vertex.margins.dedup();
@@ -114,7 +132,6 @@ impl<F: Family> Lines<'_, F> {
     /// The labels on the left and on the right of a part, where it is farthest from other lines.
     /// Places where it has others are `doubts`.
     fn sides(&mut self, part: &Part, doubts: &mut Vec<Point>) -> Traced<[F::Label; 2], F> {
-        const SHARES: [f64; 7] = [0.5, 0.3, 0.7, 0.15, 0.85, 0.06, 0.94];
         let (lengths, line) = (self.runs.lengths, &self.lines[part.line]);
         let length = part.length(line);
         let places = SHARES.map(|share| part.place(line, share));
@@ -139,9 +156,7 @@ impl<F: Family> Lines<'_, F> {
         let sides = self.labels_beside(width, &point, &tangent)?;
         if length > lengths.around {
             for (width, place, tangent) in &places[5..] {
-                if *width > lengths.half
-                    && self.labels_beside(*width, place, tangent)? != sides
-                {
+                if *width > lengths.half && self.labels_beside(*width, place, tangent)? != sides {
                     doubts.extend([*place, point]);
                 }
             }
@@ -171,16 +186,23 @@ impl<F: Family> Lines<'_, F> {
         Ok(label)
     }
 
-    /// Whether a part is another one once more: two margins are one function along it.
-    fn is_twin(&self, part: &Part, seen: &[Seen<F::Label>]) -> bool {
-        let Some(ends) = part.cuts.map(|cuts| cuts.map(|cut| cut.vertex)) else { return false };
-        let line = &self.lines[part.line];
-        let middle = line.at(part.place(line, 0.5));
-        seen.iter().any(|other| {
-            let theirs = other.part.cuts.map(|cuts| cuts.map(|cut| cut.vertex));
-            let same = theirs.is_some_and(|[a, b]| [a, b] == ends || [b, a] == ends);
-            let other = &self.lines[other.part.line];
-            same && other.near(&middle, self.runs.lengths.touch).is_some()
+    /// Whether a part runs along one that is seen: two margins are one function there, or cannot be
+    /// told apart.
+    fn is_twin(&self, part: &Seen<F::Label>, seen: &[(usize, Seen<F::Label>)]) -> bool {
+        let line = &self.lines[part.part.line];
+        let points = SHARES.map(|share| line.at(part.part.place(line, share)));
+        let [left, right] = &part.sides;
+        seen.iter().any(|(_, other)| {
+            let along = &self.lines[other.part.line];
+            let [from, to] = other.part.ends(along);
+            let touch = self.runs.lengths.touch;
+            let runs_along = |point: &Point| {
+                let near = along.near(point, touch).map(|(place, _)| place);
+                near.is_some_and(|place| along.ends.is_none() || (from <= place && place <= to))
+            };
+            let same =
+                other.sides == part.sides || [right, left] == [&other.sides[0], &other.sides[1]];
+            same && other.part.line != part.part.line && points.iter().all(runs_along)
         })
     }
 
@@ -245,9 +267,8 @@ impl<F: Family> Lines<'_, F> {
         };
         let between = (from.place.piece + 1..=to.place.piece).map(|index| *line.node(index));
         let mut nodes: Vec<Node> = between.filter(apart).collect();
-        let is_moved = |cut: &Cut| {
-            (line.at(cut.place) - vertices[cut.vertex].point).norm() > solved
-        };
+        let is_moved =
+            |cut: &Cut| (line.at(cut.place) - vertices[cut.vertex].point).norm() > solved;
         nodes.insert(0, start);
         if is_moved(&to) {
             lead(&mut nodes, end);

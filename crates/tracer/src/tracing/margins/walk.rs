@@ -11,7 +11,7 @@ use crate::window::Point;
 /// The most zeros on one walk.
 const STEPS: usize = 24;
 
-impl<F: Family> Lines<'_, F> {
+impl<F: Family> Lines<'_, '_, F> {
     /// Searches for zeros of margins between two places, both ways.
     pub(super) fn between(&mut self, one: &Sampled<F>, other: &Sampled<F>) -> Traced<(), F> {
         let ahead = self.walk(one, other)?;
@@ -85,7 +85,9 @@ impl<F: Family> Lines<'_, F> {
             return Ok(false);
         }
         self.seeds += 1;
-        let Some(new) = trace(runs, margin, &found.point, &gradient)? else { return Ok(false) };
+        let Some(new) = trace(runs, &self.watch, margin, &found.point, &gradient)? else {
+            return Ok(false);
+        };
         for old in self.lines.iter_mut().filter(|line| line.margin == new.margin) {
             if new.is_part_of(old, lengths.touch) {
                 return Ok(false);
