@@ -111,7 +111,8 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
 
 impl<'w, E> Surveyor<'w, E> {
     /// Traces, subdivides and verifies a family in a window, and looks again where the verification
-    /// finds other labels, until it finds none or nothing new comes.
+    /// finds other labels, until it finds none or nothing new comes. If something is in doubt then,
+    /// the window is traced by its margins alone, which counts if it leaves no doubt.
     ///
     /// What cannot be resolved is part of the result: [`Atlas::unresolved`] and
     /// [`Atlas::verification`] say what and where, and the regions that it touches are in doubt.
