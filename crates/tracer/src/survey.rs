@@ -156,7 +156,7 @@ impl<'w, E> Surveyor<'w, E> {
             tracer.require_few(&surveyor.executor, &surveyor.watch)?;
             let (atlas, lines) = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
             let extrema = match lines {
-                Some(mut lines) => lines.extrema()?,
+                Some(lines) => lines.extrema()?,
                 None => tracer.extrema()?,
             };
             Ok((atlas, extrema))
@@ -195,9 +195,10 @@ impl<'w, E> Surveyor<'w, E> {
     {
         let Some(unfinished) = atlas.unfinished.take() else { return Ok(atlas) };
         let (round, window) = (atlas.rounds, *atlas.plane.window());
-        let result = unfinished.brackets.is_some().then_some(atlas);
+        let finished = unfinished.surveyed;
+        let result = (finished || unfinished.brackets.is_some()).then_some(atlas);
         let mut tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
-        Ok(self.finish(&Own(family), &mut tracer, Survey { result, round, finished: false })?.0)
+        Ok(self.finish(&Own(family), &mut tracer, Survey { result, round, finished })?.0)
     }
 
     /// The atlas of a tracer, which may have begun: the tracer explores, the regions are verified,
@@ -216,28 +217,34 @@ impl<'w, E> Surveyor<'w, E> {
     where
         E: Executor<D::Family>,
     {
-        let Survey { result, round, mut finished } = self.survey(draft, tracer, begun)?;
+        let begun = if begun.finished { begun } else { self.survey(draft, tracer, begun)? };
+        let Survey { result, round, finished } = begun;
         let mut atlas = match result {
             Some(atlas) => atlas,
             None => self.unverified(draft, tracer.network(), round)?.0,
         };
+        let mut surveyed = false;
         if finished && !atlas.agrees() {
-            match self.by_margins(draft, &tracer.window())? {
-                Some((other, lines)) if other.agrees() => return Ok((other, Some(lines))),
-                Some(_) => {}
-                None => {
-                    finished = false;
-                    // There is nothing left to look for but by margins.
-                    tracer.begin_again(Vec::new());
-                }
+            match self.by_margins(draft, &tracer.window()) {
+                Ok(Some((other, lines))) if other.agrees() => return Ok((other, Some(lines))),
+                // Runs may fail where the first way had nothing to look for.
+                Ok(Some(_)) | Err(_) => {}
+                Ok(None) => surveyed = true,
             }
         }
-        if !finished {
-            let State { network, uncertainties, suspects, probed, stage, brackets } =
-                tracer.state();
+        if surveyed || !finished {
+            let state = tracer.state();
+            let State { network, uncertainties, suspects, probed, stage, brackets, .. } = state;
             let network = draft.drawn(network);
-            atlas.unfinished =
-                Some(Box::new(State { network, uncertainties, suspects, probed, stage, brackets }));
+            atlas.unfinished = Some(Box::new(State {
+                network,
+                uncertainties,
+                suspects,
+                probed,
+                stage,
+                brackets,
+                surveyed,
+            }));
         }
         Ok((atlas, None))
     }

@@ -51,6 +51,8 @@ pub(crate) struct Lines<'f, 'w, F: Family> {
     /// The places around which lines were searched for.
     visited: BTreeSet<[u64; 2]>,
     seeds: usize,
+    /// The curves of the last network.
+    curves: Vec<Curve<F::Label, F::Margin>>,
 }
 
 /// What lines divide the window into, as far as runs see it.
@@ -77,6 +79,7 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
             labels: HashMap::new(),
             visited: BTreeSet::new(),
             seeds: 0,
+            curves: Vec::new(),
         })
     }
 
@@ -154,13 +157,13 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         let statistics =
             TraceStatistics { free_runs, prescribed_runs, nodes, rejected: 0, seeds: self.seeds };
         let window = self.runs.window;
+        self.curves.clone_from(&curves);
         Ok(NetworkOf::<F> { window, curves, vertices, statistics, unresolved })
     }
 
-    /// The places where curves are extremal in a coordinate.
-    pub fn extrema(&mut self) -> Traced<Vec<Extremum>, F> {
-        let curves = self.network()?.curves;
-        extrema(&self.runs, &curves)
+    /// The places where the curves of the last network are extremal in a coordinate.
+    pub fn extrema(&self) -> Traced<Vec<Extremum>, F> {
+        extrema(&self.runs, &self.curves)
     }
 
     /// The free runs of a lattice whose first and last places lie just inside the edges, in columns.
@@ -190,29 +193,36 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
             let Arranged { vertices, doubts, .. } = self.arranged()?;
             let inside = vertices.iter().filter(|vertex| !vertex.kind.is_on_window());
             let places: Vec<Point> = inside.map(|vertex| vertex.point).chain(doubts).collect();
-            let lost = |line: &Line<F::Margin>| {
-                line.ends.map_or([false; 2], |ends| ends.map(|end| end == Reach::Lost))
-            };
-            let lost: Vec<[bool; 2]> = self.lines.iter().map(lost).collect();
-            for (index, ends) in lost.into_iter().enumerate() {
-                for (end, _) in ends.into_iter().enumerate().filter(|(_, lost)| *lost) {
-                    if self.watch.is_cancelled() {
-                        return Ok(false);
-                    }
-                    self.look_beside(index, end)?;
+            let ends = self.lost_ends();
+            self.watch.report(Progress::Begin { steps: ends.len() + places.len() });
+            for [index, end] in ends {
+                if self.watch.is_cancelled() {
+                    return Ok(false);
                 }
+                self.look_beside(index, end)?;
+                self.watch.report(Progress::Advance { steps: 1 });
             }
             for place in places {
                 if self.watch.is_cancelled() {
                     return Ok(false);
                 }
                 self.look_around(&place)?;
+                self.watch.report(Progress::Advance { steps: 1 });
             }
             if self.changes == before {
                 break;
             }
         }
         Ok(!self.watch.is_cancelled())
+    }
+
+    /// The ends of lines that were lost, each a line and 0 or 1.
+    fn lost_ends(&self) -> Vec<[usize; 2]> {
+        let ends = (0..self.lines.len()).flat_map(|index| [[index, 0], [index, 1]]);
+        let is_lost = |[index, end]: &[usize; 2]| {
+            self.lines[*index].ends.is_some_and(|ends| ends[*end] == Reach::Lost)
+        };
+        ends.filter(is_lost).collect()
     }
 
     /// Searches between two places, in parts if the run in their middle differs from what the runs

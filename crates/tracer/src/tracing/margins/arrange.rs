@@ -12,6 +12,11 @@ use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 
 impl<F: Family> Lines<'_, '_, F> {
+    /// The greatest number of lines. Many are not seen by runs.
+    pub(super) fn most(&self) -> usize {
+        self.runs.options.max_curves.saturating_mul(2)
+    }
+
     /// The lines that could not be followed to their end, or not at all.
     pub(super) fn unfollowed(&self) -> Vec<Unresolved<F::Label>> {
         let limit = |line: &Line<F::Margin>| {
@@ -20,7 +25,7 @@ impl<F: Family> Lines<'_, '_, F> {
             Some(Unresolved::TooManyNodes { point: line.tip(end) })
         };
         let mut open: Vec<_> = self.lines.iter().filter_map(limit).collect();
-        if let Some(last) = self.lines.get(self.runs.options.max_curves - 1) {
+        if let Some(last) = self.lines.get(self.most() - 1) {
             open.push(Unresolved::TooManyCurves { point: last.tip(0) });
         }
         open

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use crate::cubic::Cubic;
-use crate::lengths::Lengths;
+use crate::lengths::{Lengths, angle};
 use crate::tracing::margins::line::{Line, Place};
 use crate::window::{Point, Window};
 
@@ -137,7 +137,7 @@ impl Meeting<'_> {
         if one.is_straight() && other.is_straight() {
             let sine = along.perp(&across).abs() / (along.norm() * across.norm());
             let short = along.norm().max(across.norm()) < self.lengths.half;
-            if sine > 0.02 || short {
+            if sine > angle::TANGENT || short {
                 self.solve(&one, &other);
                 return;
             }
@@ -155,11 +155,10 @@ impl Meeting<'_> {
 
     /// The crossing of two parts that are nearly straight, by Newton's method.
     fn solve(&mut self, one: &Part, other: &Part) {
-        /// Parts that meet at less do not cross but run along each other.
-        const LEAST: f64 = 1e-6;
         let (along, across) = (one.chord(), other.chord());
         let (length, width) = (along.norm(), across.norm());
-        if along.perp(&across).abs() < LEAST * length * width {
+        if along.perp(&across).abs() < angle::STRAIGHT * length * width {
+            // They run along each other.
             return;
         }
         let between = other.cubic.points[0] - one.cubic.points[0];

@@ -2,6 +2,7 @@
 //! so on.
 
 use crate::family::Family;
+use crate::lengths::angle;
 use crate::tracing::corrector::correct;
 use crate::tracing::margins::Lines;
 use crate::tracing::margins::line::{Line, trace};
@@ -60,12 +61,14 @@ impl<F: Family> Lines<'_, '_, F> {
         margin: &F::Margin,
         across: &Point,
     ) -> Traced<bool, F> {
+        /// Lines that meet at less are one: a hundred times the error of a direction.
+        const ONE: f64 = 100.0 * angle::DEPENDENT;
         let runs = &self.runs;
         let lengths = runs.lengths;
         let near = 0.3 * lengths.half;
         let known = |line: &&Line<F::Margin>| line.margin == *margin;
         if self.lines.iter().filter(known).any(|line| line.near(zero, near).is_some())
-            || self.lines.len() >= runs.options.max_curves
+            || self.lines.len() >= self.most()
         {
             return Ok(false);
         }
@@ -79,7 +82,7 @@ impl<F: Family> Lines<'_, '_, F> {
         // Margins that are one function have one line.
         let coincides = self.lines.iter().any(|line| {
             line.near(&found.point, lengths.same)
-                .is_some_and(|(place, _)| line.tangent(place).perp(&tangent).abs() < 1e-5)
+                .is_some_and(|(place, _)| line.tangent(place).perp(&tangent).abs() < ONE)
         });
         if coincides {
             return Ok(false);
