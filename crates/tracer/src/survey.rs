@@ -89,6 +89,12 @@ impl<T> Survey<T> {
 /// The atlas of a draft.
 pub type DraftedOf<D> = Atlas<<D as Draft>::Label, <D as Draft>::Margin>;
 
+/// An atlas that was traced by margins, with their zero sets.
+type ByMargins<'f, 'w, D> = (DraftedOf<D>, Lines<'f, 'w, <D as Draft>::Family>);
+
+/// An atlas, with the zero sets if it was traced by margins.
+type Found<'f, 'w, D> = (DraftedOf<D>, Option<Lines<'f, 'w, <D as Draft>::Family>>);
+
 /// Why there is no atlas of a draft.
 type DraftError<D> = AtlasError<<<D as Draft>::Family as Family>::Error>;
 
@@ -213,7 +219,7 @@ impl<'w, E> Surveyor<'w, E> {
         draft: &'f D,
         tracer: &mut Tracer<'_, D::Family>,
         begun: Survey<DraftedOf<D>>,
-    ) -> Result<(DraftedOf<D>, Option<Lines<'f, 'w, D::Family>>), DraftError<D>>
+    ) -> Result<Found<'f, 'w, D>, DraftError<D>>
     where
         E: Executor<D::Family>,
     {
@@ -251,12 +257,11 @@ impl<'w, E> Surveyor<'w, E> {
 
     /// The atlas of the zero sets of margins, which are searched for again where the verification
     /// finds that one is missing. `None` if the watch cancels.
-    #[expect(clippy::type_complexity, reason = "an atlas and the lines of it")]
     fn by_margins<'f, D: Draft>(
         &self,
         draft: &'f D,
         window: &Window,
-    ) -> Result<Option<(DraftedOf<D>, Lines<'f, 'w, D::Family>)>, DraftError<D>>
+    ) -> Result<Option<ByMargins<'f, 'w, D>>, DraftError<D>>
     where
         E: Executor<D::Family>,
     {

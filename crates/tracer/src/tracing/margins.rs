@@ -43,7 +43,7 @@ pub(crate) struct Lines<'f, 'w, F: Family> {
     runs: Runs<'f, F>,
     /// While it cancels, what is found is not whole.
     watch: Watch<'w>,
-    lines: Vec<Line<F::Margin>>,
+    all: Vec<Line<F::Margin>>,
     /// The number of lines that were found, or found to be longer.
     changes: usize,
     /// Labels that were asked for, by the digits of their places.
@@ -74,7 +74,7 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         Ok(Self {
             runs: Runs::new(family, *window, *options)?,
             watch,
-            lines: Vec::new(),
+            all: Vec::new(),
             changes: 0,
             labels: HashMap::new(),
             visited: BTreeSet::new(),
@@ -113,7 +113,7 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
             if self.watch.is_cancelled() {
                 return Ok(false);
             }
-            let is_known = |[a, b]: &[Point; 2]| self.lines.iter().any(|line| line.crosses(a, b));
+            let is_known = |[a, b]: &[Point; 2]| self.all.iter().any(|line| line.crosses(a, b));
             let pending = island::beside(&self.runs, &samples, size, index, &cell, is_known)?;
             for ends in pending {
                 self.search(ends)?;
@@ -153,7 +153,7 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         let unresolved = self.unfollowed();
         let Arranged { curves, vertices, .. } = self.arranged()?;
         let [free_runs, prescribed_runs] = self.runs.counts();
-        let nodes = self.lines.iter().map(|line| line.nodes.len()).sum();
+        let nodes = self.all.iter().map(|line| line.nodes.len()).sum();
         let statistics =
             TraceStatistics { free_runs, prescribed_runs, nodes, rejected: 0, seeds: self.seeds };
         let window = self.runs.window;
@@ -218,9 +218,9 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
 
     /// The ends of lines that were lost, each a line and 0 or 1.
     fn lost_ends(&self) -> Vec<[usize; 2]> {
-        let ends = (0..self.lines.len()).flat_map(|index| [[index, 0], [index, 1]]);
+        let ends = (0..self.all.len()).flat_map(|index| [[index, 0], [index, 1]]);
         let is_lost = |[index, end]: &[usize; 2]| {
-            self.lines[*index].ends.is_some_and(|ends| ends[*end] == Reach::Lost)
+            self.all[*index].ends.is_some_and(|ends| ends[*end] == Reach::Lost)
         };
         ends.filter(is_lost).collect()
     }
@@ -274,7 +274,7 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
     /// Searches beside the last part of a line, where it makes a wedge with another one, unless that
     /// was done.
     fn look_beside(&mut self, index: usize, end: usize) -> Traced<(), F> {
-        let line = &self.lines[index];
+        let line = &self.all[index];
         let tip = line.tip(end);
         let nodes: Vec<_> =
             if end == 0 { line.nodes.clone() } else { line.nodes.iter().rev().copied().collect() };

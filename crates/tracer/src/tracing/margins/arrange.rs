@@ -24,8 +24,8 @@ impl<F: Family> Lines<'_, '_, F> {
             let end = ends.iter().position(|end| *end == Reach::Limit)?;
             Some(Unresolved::TooManyNodes { point: line.tip(end) })
         };
-        let mut open: Vec<_> = self.lines.iter().filter_map(limit).collect();
-        if let Some(last) = self.lines.get(self.most() - 1) {
+        let mut open: Vec<_> = self.all.iter().filter_map(limit).collect();
+        if let Some(last) = self.all.get(self.most() - 1) {
             open.push(Unresolved::TooManyCurves { point: last.tip(0) });
         }
         open
@@ -35,8 +35,8 @@ impl<F: Family> Lines<'_, '_, F> {
     pub(super) fn arranged(&mut self) -> Traced<Arranged<F>, F> {
         self.drop_fragments();
         let mut vertices = Vec::new();
-        let mut cuts: Vec<Vec<Cut>> = vec![Vec::new(); self.lines.len()];
-        for (line, own) in self.lines.iter().zip(&mut cuts) {
+        let mut cuts: Vec<Vec<Cut>> = vec![Vec::new(); self.all.len()];
+        for (line, own) in self.all.iter().zip(&mut cuts) {
             for end in 0..2 {
                 if line.ends.is_some_and(|ends| ends[end] == Reach::Edge) {
                     let vertex = self.edge_vertex(line, end, &mut vertices);
@@ -44,18 +44,18 @@ impl<F: Family> Lines<'_, '_, F> {
                 }
             }
         }
-        for meeting in crossings(&self.lines, &self.runs.window, &self.runs.lengths) {
+        for meeting in crossings(&self.all, &self.runs.window, &self.runs.lengths) {
             if let Some(vertex) = self.crossing_vertex(&meeting)? {
                 self.keep(vertex, &mut vertices);
             }
         }
         for [index, end] in self.open_ends() {
             let vertex = self.end_vertex(index, end, &mut vertices)?;
-            cuts[index].push(Cut { place: self.lines[index].end(end), vertex });
+            cuts[index].push(Cut { place: self.all[index].end(end), vertex });
         }
         let reach = 2.0 * self.runs.lengths.same;
         for (vertex, it) in vertices.iter().enumerate() {
-            for (line, own) in self.lines.iter().zip(&mut cuts) {
+            for (line, own) in self.all.iter().zip(&mut cuts) {
                 let known = own.iter().any(|cut| cut.vertex == vertex);
                 if let Some((place, _)) = line.near(&it.point, reach).filter(|_| !known) {
                     own.push(Cut { place, vertex });
@@ -76,14 +76,14 @@ impl<F: Family> Lines<'_, '_, F> {
             let hides = |other: &Line<F::Margin>| {
                 line.nodes.iter().all(|node| other.near(&node.point, reach).is_some())
             };
-            let mut others = self.lines.iter().enumerate().filter(|(other, _)| *other != index);
+            let mut others = self.all.iter().enumerate().filter(|(other, _)| *other != index);
             line.ends == Some([Reach::Lost; 2])
                 && line.nodes.len() <= MOST
                 && others.any(|(_, other)| hides(other))
         };
-        let fragments: Vec<bool> = self.lines.iter().enumerate().map(is_fragment).collect();
+        let fragments: Vec<bool> = self.all.iter().enumerate().map(is_fragment).collect();
         let mut fragments = fragments.into_iter();
-        self.lines.retain(|_| fragments.next() == Some(false));
+        self.all.retain(|_| fragments.next() == Some(false));
     }
 
     /// The index of the vertex where a line leaves the window.
@@ -115,7 +115,7 @@ impl<F: Family> Lines<'_, '_, F> {
     fn crossing_vertex(&self, meeting: &Crossing) -> Traced<Option<Vertex<F::Margin>>, F> {
         let lengths = self.runs.lengths;
         let Crossing { lines: [one, other], places: [here, there], point } = meeting;
-        let (one, other) = (&self.lines[*one], &self.lines[*other]);
+        let (one, other) = (&self.all[*one], &self.all[*other]);
         let names = [&one.names[here.piece], &other.names[there.piece]];
         let (along, across) = (one.tangent(*here), other.tangent(*there));
         let sine = along.perp(&across).abs().max(lengths.same / lengths.scale);
@@ -139,7 +139,7 @@ impl<F: Family> Lines<'_, '_, F> {
     /// The parts between the cuts, line after line.
     fn divided(&self, cuts: Vec<Vec<Cut>>) -> Vec<Part> {
         let mut parts = Vec::new();
-        for (index, (line, mut own)) in self.lines.iter().zip(cuts).enumerate() {
+        for (index, (line, mut own)) in self.all.iter().zip(cuts).enumerate() {
             own.sort_by(|one, other| {
                 let order = |cut: &Cut| cut.place.piece as f64 + cut.place.theta;
                 order(one).total_cmp(&order(other))

@@ -13,7 +13,7 @@ impl<F: Family> Lines<'_, '_, F> {
     /// come first: where these end, lines end that were lost farther away.
     pub(super) fn open_ends(&self) -> Vec<[usize; 2]> {
         let mut open = Vec::new();
-        for (index, line) in self.lines.iter().enumerate() {
+        for (index, line) in self.all.iter().enumerate() {
             for end in 0..2 {
                 if line.ends.is_some_and(|ends| ends[end] != Reach::Edge) {
                     let beside = self.nearest(index, &line.tip(end));
@@ -34,7 +34,7 @@ impl<F: Family> Lines<'_, '_, F> {
         vertices: &mut Vec<Vertex<F::Margin>>,
     ) -> Traced<usize, F> {
         let lengths = self.runs.lengths;
-        let tip = self.lines[index].tip(end);
+        let tip = self.all[index].tip(end);
         if let Some(ahead) = self.touched_ahead(index, end, vertices) {
             return Ok(ahead);
         }
@@ -61,8 +61,8 @@ impl<F: Family> Lines<'_, '_, F> {
         {
             return Ok(vertex);
         }
-        let margins = vec![self.lines[index].margin.clone()];
-        let foot = beside.map(|(other, place, _)| self.lines[other].at(place));
+        let margins = vec![self.all[index].margin.clone()];
+        let foot = beside.map(|(other, place, _)| self.all[other].at(place));
         let point = solved.or(foot).unwrap_or(tip);
         vertices.push(Vertex { point, kind: VertexKind::Degenerate, margins });
         Ok(vertices.len() - 1)
@@ -71,7 +71,7 @@ impl<F: Family> Lines<'_, '_, F> {
     /// The line that passes closest by the tip of another.
     fn nearest(&self, index: usize, tip: &Point) -> Option<(usize, Place, f64)> {
         let reach = self.runs.lengths.close;
-        let others = self.lines.iter().enumerate().filter(|(other, _)| *other != index);
+        let others = self.all.iter().enumerate().filter(|(other, _)| *other != index);
         let near = others.filter_map(|(other, line)| {
             line.near(tip, reach).map(|(place, distance)| (other, place, distance))
         });
@@ -88,7 +88,7 @@ impl<F: Family> Lines<'_, '_, F> {
         place: Place,
         reach: f64,
     ) -> Traced<Option<Point>, F> {
-        let (line, passing) = (&self.lines[index], &self.lines[other]);
+        let (line, passing) = (&self.all[index], &self.all[other]);
         let own = &line.names[if end == 0 { 0 } else { line.pieces() }];
         let names = [own, &passing.names[place.piece]];
         if names[0] == names[1] {
@@ -110,11 +110,11 @@ impl<F: Family> Lines<'_, '_, F> {
         vertices: &[Vertex<F::Margin>],
     ) -> Option<usize> {
         let lengths = self.runs.lengths;
-        let line = &self.lines[index];
+        let line = &self.all[index];
         let last = line.pieces();
         let (tip, before) = (line.tip(end), if end == 0 { 1 } else { last - 1 });
         let forward = tip - line.nodes[before].point;
-        for (other, passing) in self.lines.iter().enumerate() {
+        for (other, passing) in self.all.iter().enumerate() {
             if other == index {
                 continue;
             }

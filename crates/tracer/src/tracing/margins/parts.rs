@@ -79,7 +79,7 @@ impl<F: Family> Lines<'_, '_, F> {
             let sides = self.sides(part, &mut doubts)?;
             if sides[0] != sides[1] {
                 all.push((
-                    part.length(&self.lines[part.line]),
+                    part.length(&self.all[part.line]),
                     all.len(),
                     Seen { part: *part, sides },
                 ));
@@ -102,7 +102,7 @@ impl<F: Family> Lines<'_, '_, F> {
         for Seen { part, sides } in seen {
             let nodes = self.nodes(&part, &vertices);
             let ends = part.cuts.map(|cuts| cuts.map(|cut| cut.vertex));
-            let margin = self.lines[part.line].margin.clone();
+            let margin = self.all[part.line].margin.clone();
             curves.push(Curve { margin, sides, nodes, ends });
         }
         let mut numbers = vec![0; vertices.len()];
@@ -132,11 +132,11 @@ impl<F: Family> Lines<'_, '_, F> {
     /// The labels on the left and on the right of a part, where it is farthest from other lines.
     /// Places where it has others are `doubts`.
     fn sides(&mut self, part: &Part, doubts: &mut Vec<Point>) -> Traced<[F::Label; 2], F> {
-        let (lengths, line) = (self.runs.lengths, &self.lines[part.line]);
+        let (lengths, line) = (self.runs.lengths, &self.all[part.line]);
         let length = part.length(line);
         let places = SHARES.map(|share| part.place(line, share));
         let points = places.map(|place| line.at(place));
-        let others = self.lines.iter().enumerate().filter(|(index, _)| *index != part.line);
+        let others = self.all.iter().enumerate().filter(|(index, _)| *index != part.line);
         // Lines that are one along the whole part do not make it narrow.
         let others: Vec<[f64; 7]> = others
             .map(|(_, other)| points.map(|point| other.distance(&point, lengths.close)))
@@ -189,11 +189,11 @@ impl<F: Family> Lines<'_, '_, F> {
     /// Whether a part runs along one that is seen: two margins are one function there, or cannot be
     /// told apart.
     fn is_twin(&self, part: &Seen<F::Label>, seen: &[(usize, Seen<F::Label>)]) -> bool {
-        let line = &self.lines[part.part.line];
+        let line = &self.all[part.part.line];
         let points = SHARES.map(|share| line.at(part.part.place(line, share)));
         let [left, right] = &part.sides;
         seen.iter().any(|(_, other)| {
-            let along = &self.lines[other.part.line];
+            let along = &self.all[other.part.line];
             let [from, to] = other.part.ends(along);
             let touch = self.runs.lengths.touch;
             let runs_along = |point: &Point| {
@@ -233,12 +233,12 @@ impl<F: Family> Lines<'_, '_, F> {
         while index < joined.len() {
             let line = joined[index].part.line;
             let last = joined.iter().rposition(|other| other.part.line == line).unwrap_or(index);
-            let is_closed = self.lines[line].ends.is_none();
+            let is_closed = self.all[line].ends.is_none();
             if is_closed && passes(&joined[last], &joined[index]) {
                 if last == index {
                     joined[index].part.cuts = None;
                 } else if let Some([_, end]) = joined[index].part.cuts {
-                    let piece = end.place.piece + self.lines[line].pieces();
+                    let piece = end.place.piece + self.all[line].pieces();
                     let end = Cut { place: Place { piece, ..end.place }, ..end };
                     if let Some(cuts) = &mut joined[last].part.cuts {
                         cuts[1] = end;
@@ -255,7 +255,7 @@ impl<F: Family> Lines<'_, '_, F> {
 
     /// The nodes of a part, which ends at its vertices.
     fn nodes(&self, part: &Part, vertices: &[Vertex<F::Margin>]) -> Vec<Node> {
-        let line = &self.lines[part.line];
+        let line = &self.all[part.line];
         let Some([from, to]) = part.cuts else { return line.nodes.clone() };
         let [start, end] = [from, to].map(|cut| Node {
             point: vertices[cut.vertex].point,

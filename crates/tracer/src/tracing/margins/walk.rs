@@ -67,8 +67,8 @@ impl<F: Family> Lines<'_, '_, F> {
         let lengths = runs.lengths;
         let near = 0.3 * lengths.half;
         let known = |line: &&Line<F::Margin>| line.margin == *margin;
-        if self.lines.iter().filter(known).any(|line| line.near(zero, near).is_some())
-            || self.lines.len() >= self.most()
+        if self.all.iter().filter(known).any(|line| line.near(zero, near).is_some())
+            || self.all.len() >= self.most()
         {
             return Ok(false);
         }
@@ -80,7 +80,7 @@ impl<F: Family> Lines<'_, '_, F> {
         };
         let tangent = Point::new(gradient.y, -gradient.x).normalize();
         // Margins that are one function have one line.
-        let coincides = self.lines.iter().any(|line| {
+        let coincides = self.all.iter().any(|line| {
             line.near(&found.point, lengths.same)
                 .is_some_and(|(place, _)| line.tangent(place).perp(&tangent).abs() < ONE)
         });
@@ -91,7 +91,7 @@ impl<F: Family> Lines<'_, '_, F> {
         let Some(new) = trace(runs, &self.watch, margin, &found.point, &gradient)? else {
             return Ok(false);
         };
-        for old in self.lines.iter_mut().filter(|line| line.margin == new.margin) {
+        for old in self.all.iter_mut().filter(|line| line.margin == new.margin) {
             if new.is_part_of(old, lengths.touch) {
                 return Ok(false);
             }
@@ -102,7 +102,7 @@ impl<F: Family> Lines<'_, '_, F> {
                 return Ok(true);
             }
         }
-        self.lines.push(new);
+        self.all.push(new);
         self.changes += 1;
         Ok(true)
     }
