@@ -48,7 +48,7 @@ pub mod end;
 pub mod extrema;
 mod fit;
 pub mod follow;
-pub(crate) mod margins;
+pub mod margins;
 mod naming;
 pub mod network;
 pub mod runs;

@@ -19,9 +19,9 @@ mod walk;
 use std::collections::{BTreeSet, HashMap};
 
 use crate::curve::{Curve, Vertex};
-use crate::executor::Executor;
+use crate::executor::{Executor, Serial};
 use crate::family::Family;
-use crate::options::TraceOptions;
+use crate::options::{TraceError, TraceOptions};
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::margins::line::{Line, Reach};
 use crate::tracing::network::{NetworkOf, TraceStatistics};
@@ -61,6 +61,28 @@ pub(crate) struct Arranged<F: Family> {
     pub vertices: Vec<Vertex<F::Margin>>,
     /// Places around which lines are missing, or may be.
     pub doubts: Vec<Point>,
+}
+
+/// Traces every boundary of a family in a window by its margins alone: zero sets of margins are
+/// followed without labels, divided where they meet, and kept where the labels on their sides
+/// differ.
+///
+/// [`trace`](crate::trace()) follows boundaries by their labels, and knows the accuracy of each
+/// vertex. This way also tells boundaries apart that touch, between which a strip is narrower than
+/// labels can tell. Neither finds every boundary of every family: verify the regions. A
+/// [`Surveyor`](crate::Surveyor) does, and takes this way where the other one leaves a doubt.
+///
+/// # Errors
+/// An option is out of its range, the window is not a rectangle, a run fails, or a margin is not a
+/// number.
+pub fn trace_by_margins<F: Family>(
+    family: &F,
+    window: &Window,
+    options: &TraceOptions,
+) -> Result<NetworkOf<F>, TraceError<F::Error>> {
+    let mut lines = Lines::new(family, window, options, Watch::SILENT)?;
+    lines.explore(&Serial)?;
+    lines.network()
 }
 
 impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
@@ -310,6 +332,3 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         place.sup(&self.runs.window.low).inf(&self.runs.window.high)
     }
 }
-
-#[cfg(test)]
-mod tests;

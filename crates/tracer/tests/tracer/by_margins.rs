@@ -1,9 +1,10 @@
+//! Tracing by margins alone: crossings, touches, margins that are one, and what no run sees.
+
 use std::convert::Infallible;
 
-use super::*;
-use crate::executor::Serial;
-use crate::family::FreeRun;
-use crate::regions::subdivision::Subdivision;
+use stickslip_tracer::{
+    Family, FreeRun, Network, Point, Subdivision, TraceOptions, Window, trace_by_margins,
+};
 
 /// Margins with names, each with the function of the plane that it is where it exists.
 struct Shapes<L> {
@@ -40,9 +41,8 @@ where
 {
     let window = Window { low: Point::new(-1.0, -1.1), high: Point::new(1.2, 1.0) };
     let options = TraceOptions { cells: 8, ..TraceOptions::default() };
-    let mut lines = Lines::new(shapes, &window, &options, Watch::SILENT).unwrap();
-    assert!(lines.explore(&Serial).unwrap());
-    let NetworkOf::<Shapes<L>> { curves, vertices, unresolved, .. } = lines.network().unwrap();
+    let network = trace_by_margins(shapes, &window, &options).unwrap();
+    let Network { curves, vertices, unresolved, .. } = network;
     assert!(unresolved.is_empty());
     let mut names: Vec<&str> = curves.iter().map(|curve| curve.margin).collect();
     names.sort_unstable();
