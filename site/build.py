@@ -45,6 +45,8 @@ PAGES = (
 )
 #: Pages of this folder, which stand at the root of the site.
 OWN = (FOLDER / "index.md", FOLDER / "tutorial.md")
+#: Pages that have others below them in the list of pages.
+BELOW = {"notebooks/README.md": "*", "notebooks-data/README.md": "*/README"}
 #: The pages of the reference of Python, and the modules whose names they have.
 REFERENCE = {
     "Collisions": ("collisions", "_laws", "gaining"),
@@ -135,6 +137,9 @@ def adapted(text: str, page: Path) -> str:
             link = link.removeprefix("../").replace("tutorial.md", "tutorial.ipynb")
         return f"[{words}]({link})"
 
+    below = BELOW.get(page.relative_to(ROOT).as_posix())
+    if below:
+        text += f"\n```{{toctree}}\n:hidden:\n:glob:\n\n{below}\n```\n"
     text = re.sub(r"\[([^]\[]*)\]\(([^)\s]+)\)", address, text)
     # A paragraph that is a link to a system is its text.
     text = re.sub(
@@ -193,7 +198,8 @@ def tutorial() -> str:
 def python_reference() -> dict[str, str]:
     """The pages of the reference of Python, by their names."""
     left = set(stickslip.__all__)
-    overview = ["Python", "======", "", inspect.getdoc(stickslip) or "", "", ".. toctree::", ""]
+    overview = ["Python", "======", "", ".. currentmodule:: stickslip", ""]
+    overview += [inspect.getdoc(stickslip) or "", "", ".. toctree::", "   :hidden:", ""]
     pages = {}
     tables = []
     for title, modules in REFERENCE.items():
@@ -211,7 +217,7 @@ def python_reference() -> dict[str, str]:
                 kind = "autoexception"
             page.append(f".. {kind}:: {name}\n")
             first = (inspect.getdoc(one) or "").partition("\n\n")[0]
-            tables.append(f"- :py:obj:`stickslip.{name}`: {paragraph(first, set())}")
+            tables.append(f"- `{name}`: {paragraph(first, set())}")
         pages[f"python-{stem}.rst"] = "\n".join(page) + "\n"
     if left:
         raise SystemExit(f"no page of the reference has {', '.join(sorted(left))}: see REFERENCE")
@@ -238,7 +244,8 @@ def rust_reference(rustdoc: Path | None) -> str:
             name = f"[{package['name']}](../README.md#as-a-library-of-rust)"
         documented = rustdoc and (rustdoc / library / "index.html").exists()
         docs = f'<a href="../rust/{library}/index.html">documentation</a>' if documented else ""
-        if package["description"]:
+        # Those that are not published are for this repository alone.
+        if package["publish"] is None:
             rows.append(f"| {name} | {package['description']} | {docs} |")
     whole = "" if rustdoc else "`cargo doc --no-deps --open` in the repository builds their pages."
     return "\n".join(

@@ -38,6 +38,9 @@ nb_merge_streams = True
 default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+# Names in the place of what they stand for.
+autodoc_type_aliases = {"ArrayLike": "ArrayLike", "NDArray": "NDArray"}
 autodoc_default_options = {"members": True, "undoc-members": True}
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 80
@@ -49,6 +52,16 @@ copybutton_prompt_is_regexp = True
 
 def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", as_rst)
+    app.connect("autodoc-process-signature", with_names)
+
+
+def with_names(
+    app: Sphinx, what: str, name: str, one: Any, options: Any, signature: str | None, result: str | None
+) -> tuple[str | None, str | None]:
+    """Sphinx leaves some of `autodoc_type_aliases` as what it uses inside."""
+    plain = r"TypeAliasForwardRef\('(\w+)'\)"
+    named = [text and re.sub(plain, r"\1", text) for text in (signature, result)]
+    return named[0], named[1]
 
 
 def as_rst(app: Sphinx, what: str, name: str, one: Any, options: Any, lines: list[str]) -> None:
