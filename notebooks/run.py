@@ -99,13 +99,13 @@ def run(path: Path) -> tuple[Any, str | None]:
 
 
 def make_small(data: Any) -> None:
-    """Bitmaps have 128 colours, and a picture is there once."""
+    """Bitmaps of more than 100 kB get 256 colours, and a picture is there once."""
     if data.get("text/html", "") == data.get("image/svg+xml"):
         del data["text/html"]
-    if "image/png" in data:
+    if len(data.get("image/png", "")) > 4 / 3 * 100_000:
         picture = Image.open(io.BytesIO(base64.b64decode(data["image/png"]))).convert("RGB")
         file = io.BytesIO()
-        picture.quantize(128, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+        picture.quantize(256, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
         data["image/png"] = base64.b64encode(file.getvalue()).decode()
 
 
