@@ -19,6 +19,8 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sphinx = False
 html_copy_source = False
+# Browsers do not fetch them from the disk.
+html_show_search_summary = False
 html_extra_path = ["_extra"]
 
 # The anchors of headings are those of GitHub.
