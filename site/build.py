@@ -11,6 +11,7 @@ the tutorial that fails, a public name that is in no page, a link that leads now
 import argparse
 import inspect
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -43,8 +44,8 @@ PAGES = (
     "notebooks/*.ipynb",
     "notebooks-data/**/*.md",
 )
-#: Pages of this folder, which stand at the root of the site.
-OWN = (FOLDER / "index.md", FOLDER / "tutorial.md")
+#: Pages of this folder, and where they stand in the site.
+OWN = {FOLDER / "index.md": "index.md", FOLDER / "tutorial.md": "tutorial.ipynb"}
 #: Pages that have others below them in the list of pages.
 BELOW = {"notebooks/README.md": "*", "notebooks-data/README.md": "*/README"}
 #: The pages of the reference of Python, and the modules whose names they have.
@@ -74,7 +75,9 @@ def main() -> int:
         assemble(tree, rustdoc)
         built = Path(folder, "site")
         sphinx = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going"]
-        subprocess.run([*sphinx, "-d", f"{folder}/doctrees", str(tree), str(built)], check=True)
+        sphinx += ["-d", f"{folder}/doctrees", str(tree), str(built)]
+        if subprocess.run(sphinx, check=False).returncode:
+            return 1
         if rustdoc:
             shutil.copytree(rustdoc, built / "rust")
         broken = broken_links(built)
@@ -123,28 +126,34 @@ def copy_page(page: Path, target: Path, tree: Path) -> None:
             shutil.copy(path, copy)
 
 
+def place(page: Path) -> Path:
+    """The place of a page in the tree."""
+    return Path(OWN.get(page) or page.relative_to(ROOT))
+
+
 def adapted(text: str, page: Path) -> str:
     """The text of a page as the site shows it."""
 
     def address(match: re.Match[str]) -> str:
-        words, link = match.groups()
-        folder = (page.parent / link).resolve()
-        if "://" not in link and folder.is_dir():
-            # Without a page of its own a folder is nothing that the site has.
-            readme = f"[{words}]({link.rstrip('/')}/README.md)"
-            return readme if (folder / "README.md").exists() else words
-        if page in OWN:
-            link = link.removeprefix("../").replace("tutorial.md", "tutorial.ipynb")
-        return f"[{words}]({link})"
+        words, link, anchor = match[1], match[2], match[3] or ""
+        target = (page.parent / link).resolve()
+        if "://" in link or not link:
+            return match[0]
+        if target.is_dir():
+            target /= "README.md"
+            if not target.exists():
+                # A folder without a page of its own is nothing that the site has.
+                return words
+        return f"[{words}]({os.path.relpath(place(target), place(page).parent)}{anchor})"
 
     below = BELOW.get(page.relative_to(ROOT).as_posix())
     if below:
         text += f"\n```{{toctree}}\n:hidden:\n:glob:\n\n{below}\n```\n"
-    text = re.sub(r"\[([^]\[]*)\]\(([^)\s]+)\)", address, text)
+    text = re.sub(r"\[([^]\[]*)\]\(([^)\s#]*)(#[^)\s]*)?\)", address, text)
     # A paragraph that is a link to a system is its text.
     text = re.sub(
         r"^\[[^\]]*\]\(([^)]+\.slip)\)$",
-        lambda match: shown((page.parent / match[1]).resolve(), len(page.relative_to(ROOT).parts)),
+        lambda match: shown((place(page).parent / match[1]), len(place(page).parts)),
         text,
         flags=re.MULTILINE,
     )
@@ -159,7 +168,7 @@ def adapted(text: str, page: Path) -> str:
 
 def shown(system: Path, depth: int) -> str:
     """A system as text, with a link that opens it in the explorer; `depth` is that of the page."""
-    text = system.read_text(encoding="utf-8")
+    text = (ROOT / system).read_text(encoding="utf-8")
     link = f"{'../' * (depth - 1)}explorer.html#tab=system&amp;text={quote(text, safe='')}"
     return f'```text\n{text}```\n\n<a href="{link}">Open it in the explorer</a>'
 
