@@ -69,7 +69,8 @@ def main() -> int:
     parser.add_argument("--rustdoc", type=Path, default=ROOT / "target" / "doc")
     arguments = parser.parse_args()
     begin = time.monotonic()
-    rustdoc = arguments.rustdoc if (arguments.rustdoc / "stickslip" / "index.html").exists() else None
+    documented = (arguments.rustdoc / "stickslip" / "index.html").exists()
+    rustdoc = arguments.rustdoc if documented else None
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder, "source")
         assemble(tree, rustdoc)
@@ -310,10 +311,8 @@ def broken_links(site: Path) -> list[str]:
             file, _, anchor = link.partition("#")
             target = (path.parent / unquote(file.partition("?")[0])).resolve() if file else path
             # The explorer reads what is behind the #.
-            missing = not target.is_file() or (
-                target in own and target.stem != "explorer" and unquote(anchor) not in own[target].anchors
-            )
-            if missing:
+            anchors = own[target].anchors if target in own and target.stem != "explorer" else None
+            if not target.is_file() or (anchors and unquote(anchor) not in anchors):
                 broken.append(f"{path.relative_to(site)}: {link}")
     return broken
 

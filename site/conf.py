@@ -58,12 +58,11 @@ def setup(app: Sphinx) -> None:
 
 
 def with_names(
-    app: Sphinx, what: str, name: str, one: Any, options: Any, signature: str | None, result: str | None
-) -> tuple[str | None, str | None]:
+    app: Sphinx, what: str, name: str, one: Any, options: Any, *texts: str | None
+) -> tuple[str | None, ...]:
     """Sphinx leaves some of `autodoc_type_aliases` as what it uses inside."""
     plain = r"TypeAliasForwardRef\('(\w+)'\)"
-    named = [text and re.sub(plain, r"\1", text) for text in (signature, result)]
-    return named[0], named[1]
+    return tuple(text and re.sub(plain, r"\1", text) for text in texts)
 
 
 def as_rst(app: Sphinx, what: str, name: str, one: Any, options: Any, lines: list[str]) -> None:

@@ -34,7 +34,7 @@ def test_notebooks_are_stored_as_they_were_run(path: Path, run: Any) -> None:
         if kind.startswith("image/")
     ]
     assert pictures and max(map(len, pictures)) < 150_000
-    assert not [output for cell in code for output in cell.outputs if output.get("name") == "stderr"]
+    assert "stderr" not in {output.get("name") for cell in code for output in cell.outputs}
 
 
 def test_a_change_of_outputs_is_noticed(run: Any) -> None:
