@@ -258,8 +258,8 @@ pub fn steel(subject: &Subject) -> Result<Finding, Stop> {
         }
     }
     let contact = pair.impact(at, reached)?.contact;
-    let rows = (1..).find(|&rows| 0.5 * MOST_VELOCITY_M_PER_S / f64::from(rows) <= reached);
-    let rows: u32 = rows.unwrap_or(u32::MAX);
+    let rows = (1..u32::MAX).find(|&rows| 0.5 * MOST_VELOCITY_M_PER_S / f64::from(rows) <= reached);
+    let rows = rows.unwrap_or(u32::MAX);
     let evidence = Evidence::default()
         .number("largest g_t at which ε_t is -0.6, in m/s", reached)
         .number("g_n there, in m/s", at)
