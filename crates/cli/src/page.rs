@@ -60,7 +60,7 @@ impl Page<'_> {
     /// The picture at the top, with the section that it leads to: the whole plane.
     fn opening(&self) -> impl Iterator<Item = (&str, &Picture)> {
         let plane = self.sections.iter().filter(|section| section.study.name == OPENING);
-        plane.flat_map(|section| section.pictures.first().map(|picture| (OPENING, picture)))
+        plane.filter_map(|section| section.pictures.first().map(|picture| (OPENING, picture)))
     }
 
     /// The audits among the parts, of which there is one.
