@@ -68,14 +68,12 @@ class Explorer:
 def explore(shown: Explored = None, *, height: int = 760) -> Explorer:
     """The explorer: the switching of two spheres, or of a system, under one's finger.
 
-    Args:
-        shown: what it shows first: a collision at its place, an atlas with its window, a system of
-            formulas, or a link that was copied from the page (its part behind # is enough).
-        height: pixels in a notebook.
+    shown: what it shows first: a collision at its place, an atlas with its window, a system of
+    formulas, or a link that was copied from the page (its part behind # is enough). height: pixels
+    in a notebook.
 
-    Returns:
-        What a cell of a notebook shows; `.open()` opens it in a browser, `.save(file)` writes it.
-        A link that was copied from the page is read back by `explore(link).point`.
+    The result is what a cell of a notebook shows; `open()` opens it in a browser, and `save(file)`
+    writes it. A link that was copied from the page is read back by `explore(link).point`.
 
     >>> import stickslip
     >>> page = stickslip.explore(stickslip.collide(18, 0.5, damping=0.1))
