@@ -14,9 +14,9 @@ from urllib.parse import parse_qs, quote, urlencode
 
 from stickslip import _native
 from stickslip._laws import laws
-from stickslip.atlases import Atlas
-from stickslip.collisions import Collision
-from stickslip.formulas import FormulaSystem
+from stickslip._atlases import Atlas
+from stickslip._collisions import Collision
+from stickslip._formulas import FormulaSystem
 
 Explored: TypeAlias = Collision | Atlas | FormulaSystem | str | None
 

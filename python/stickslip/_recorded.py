@@ -17,7 +17,7 @@ from stickslip._recording import Tape
 from stickslip._solutions import DenseOutput, Solution
 from stickslip._symbols import CannotRecord, Symbol, Symbols, array_of
 from stickslip._systems import Guard, Mode, _Clock, _Source
-from stickslip.formulas import FormulaSystem
+from stickslip._formulas import FormulaSystem
 
 #: Places between steps, and events, at which formulas are compared with their functions.
 MOST_PLACES = 8

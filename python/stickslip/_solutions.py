@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from xarray import Dataset
 
-    from stickslip.formulas import FormulaSystem
+    from stickslip._formulas import FormulaSystem
 
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal[

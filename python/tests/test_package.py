@@ -46,7 +46,7 @@ def test_names_are_imported_when_they_are_used() -> None:
     assert set(stickslip.__all__) <= set(dir(stickslip))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = stickslip.nothing
-    assert stickslip.maps.map is stickslip.map and stickslip.__version__
+    assert stickslip._maps.map is stickslip.map and stickslip.__version__
 
 
 def test_an_import_takes_little() -> None:

@@ -24,8 +24,8 @@ from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._solutions import Names, Solution, with_variables
-from stickslip.collisions import _threads
-from stickslip.studies import Study, _study
+from stickslip._collisions import _threads
+from stickslip._studies import Study, _study
 
 Floats: TypeAlias = NDArray[np.float64]
 

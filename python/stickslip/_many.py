@@ -18,9 +18,9 @@ from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_sta
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode
 from stickslip._progress import Progress, Report, reported
-from stickslip.collisions import _threads
-from stickslip.formulas import FormulaSystem
-from stickslip.hybrid import _arguments, _event_list, _Table
+from stickslip._collisions import _threads
+from stickslip._formulas import FormulaSystem
+from stickslip._hybrid import _arguments, _event_list, _Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

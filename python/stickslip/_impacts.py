@@ -19,7 +19,7 @@ from stickslip._axes import svg
 from stickslip._laws import Law
 from stickslip._progress import keeping
 from stickslip._tabular import Columns, Tabular
-from stickslip.collisions import Collisions, Floats, Method, OnError, _strict, _threads
+from stickslip._collisions import Collisions, Floats, Method, OnError, _strict, _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

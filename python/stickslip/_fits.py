@@ -18,8 +18,8 @@ from stickslip._kept import Kept
 from stickslip._laws import Law
 from stickslip._tabular import Columns, Tabular
 from stickslip._progress import Progress, reported
-from stickslip.collisions import _threads
-from stickslip.impacts import Bodies
+from stickslip._collisions import _threads
+from stickslip._impacts import Bodies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
