@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 17] = [
+const SOURCES: [&str; 20] = [
     "src",
     "build.rs",
     "templates",
@@ -19,8 +19,11 @@ const SOURCES: [&str; 17] = [
     "../figure/src",
     "../files/src",
     "../model/src",
+    "../number/src",
     "../orbits/src",
+    "../page/explorer.html",
     "../plane/src",
+    "../practice/src",
     "../reproduction/src",
     "../studies/src",
     "../solver/src",

@@ -17,7 +17,7 @@ from stickslip._run_arguments import state_at_start
 from stickslip._shown import Shown
 
 if TYPE_CHECKING:
-    from stickslip.formulas import FormulaSystem
+    from stickslip._formulas import FormulaSystem
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -1,4 +1,4 @@
-//! What can go wrong, and the exit code that tells it.
+//! What can go wrong, and its exit code.
 
 use std::fmt::Display;
 use std::io;

@@ -48,7 +48,8 @@ mod _native {
     use super::collision::Collision;
     #[pymodule_export]
     use super::engines::{
-        explorer, has_fused_products, laws, processor_has_fused_products, version,
+        explorer, has_fused_products, laws, processor_has_fused_products, program, restitution,
+        version,
     };
     #[pymodule_export]
     use super::failure::ComputationError;

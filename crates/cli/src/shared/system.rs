@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_expression::{Runnable, System, SystemFamily};
+use stickslip_expression::{Accumulation, Runnable, System, SystemFamily};
 use stickslip_files::input::{number, source};
 use stickslip_plane::Range;
 use stickslip_solver::Options;
@@ -10,6 +10,7 @@ use stickslip_tracer::{AtlasOptions, Point, RunNames, Window};
 
 use super::method::{atol, rtol};
 use crate::error::Failure;
+use crate::output::console::say;
 
 /// The largest text of a system, in bytes.
 const MOST_TEXT: u64 = 100_000_000;
@@ -37,7 +38,8 @@ pub struct PlaneArguments {
     pub given: GivenArguments,
 
     /// Events after which a run is not told apart from others; where events accumulate, there are
-    /// boundaries without end unless this is a small number [default: 10000000]
+    /// boundaries without end unless this is a small number [default: 10000000; for an atlas, 4 to
+    /// 12 if events accumulate in the window]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     #[arg(allow_hyphen_values = true, requires = "system", help_heading = "System of your own")]
     pub max_events: Option<u32>,
@@ -226,6 +228,22 @@ impl SystemPlane {
             },
             system,
         }))
+    }
+
+    /// The family of an atlas. If events accumulate in some runs, and `most` does not say how many
+    /// count, so few count that there are boundaries with an end; standard error says so.
+    pub fn family_of_atlas(&self, most: Option<u32>) -> SystemFamily {
+        let family = self.family.clone();
+        match self.family.accumulation(&self.window).filter(|_| most.is_none()) {
+            Some(Accumulation { events, runs, of }) => {
+                say(format_args!(
+                    "events accumulate in {runs} of {of} runs on a grid: runs are told apart up to \
+                     event {events}; --max-events chooses another number"
+                ));
+                family.up_to(events)
+            }
+            None => family,
+        }
     }
 
     /// The options of an atlas.

@@ -14,14 +14,14 @@ pub(crate) fn resolution(s: f64, h: f64) -> f64 {
 
 /// Moves aside from places where a guard has no value: d/|d| has no value where d is 0, and the
 /// values beside it show what it does there.
-pub(crate) struct Aside {
+pub(crate) struct Sidestep {
     /// The narrowest part of the step that is wider than a point.
     resolution: f64,
     nowhere: RunError,
     tried: i32,
 }
 
-impl Aside {
+impl Sidestep {
     /// `resolution` is the narrowest part of the step from `s` that is wider than a point.
     pub(crate) fn new(guard: usize, s: f64, resolution: f64) -> Self {
         Self { resolution, nowhere: RunError::GuardNotANumber { guard, s }, tried: 0 }

@@ -18,7 +18,7 @@ from stickslip._laws import Law
 from stickslip._planes import Plane
 from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
-from stickslip.collisions import Floats, _threads, psi_of_ratio
+from stickslip._collisions import Floats, _threads, psi_of_ratio
 
 
 class AtlasWarning(UserWarning):

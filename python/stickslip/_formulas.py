@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -21,11 +21,11 @@ from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
 from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
-from stickslip._run_arguments import settings_of, span, state_at_start, times_within
-from stickslip._solutions import Names, Solution, event_array, solution_of, with_variables
-from stickslip._progress import Progress, keeping, reported
-from stickslip.collisions import _threads
-from stickslip.studies import Study, _study
+from stickslip._progress import Progress, keeping, reported, reporting
+from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
+from stickslip._solutions import Names, Solution, with_variables
+from stickslip._collisions import _threads
+from stickslip._studies import Study, _study
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -57,6 +57,10 @@ class FormulaSystem:
     def parameters(self) -> dict[str, float]:
         """The values that parameters have unless others are given, by name."""
         return dict(self._defaults)
+
+    @cached_property
+    def _size(self) -> int:
+        return len(self.components)
 
     @cached_property
     def _defaults(self) -> dict[str, float]:
@@ -99,13 +103,15 @@ class FormulaSystem:
         *,
         parameters: Mapping[str, float] | None = None,
         method: str = "dop853",
-        rtol: float = 1e-10,
-        atol: float = 1e-12,
+        rtol: ArrayLike = 1e-10,
+        atol: ArrayLike = 1e-12,
         t_eval: ArrayLike | None = None,
         dense_output: bool = False,
         max_step: float = np.inf,
         first_step: float | None = None,
         max_switches: int = 10_000_000,
+        max_steps: int = MOST_STEPS,
+        progress: Progress | None = None,
     ) -> Solution:
         """Runs the system through every event.
 
@@ -116,19 +122,20 @@ class FormulaSystem:
         Raises ValueError if a name or a value is wrong, and ComputationError if the run fails.
         Ctrl-C keeps the run up to there as `partial` of the KeyboardInterrupt.
         """
-        rerun = self._arguments(
-            (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)
-        )
+        steps, most = (max_step, first_step), (max_switches, max_steps)
+        begin = (t_span, y0, mode)
+        rerun = self._arguments(begin, parameters, method, (rtol, atol), steps, most)
         values, given, end, settings = rerun
         start = given[1]
         low, high = (-np.inf if start is None else start, np.inf if end is None else end)
         times = None if t_eval is None else times_within(t_eval, low, high).tolist()
         def until_now(found: dict[str, Any]) -> Solution:
-            message = f"Stopped at t = {found['end_time']!r} by Ctrl-C."
-            return replace(self._solution(found, bool(dense_output), rerun), message=message)
+            found["message"] = f"Stopped at t = {found['end_time']!r} by Ctrl-C."
+            return self._solution(found, bool(dense_output), rerun)
 
         with keeping(until_now):
-            found = self._native.run(values, given, end, settings, times)
+            run = partial(self._native.run, values, given, end, settings, times)
+            found = reporting(progress, "solve", run)
         return self._solution(found, bool(dense_output), rerun)
 
     def sensitivities(
@@ -144,6 +151,7 @@ class FormulaSystem:
         max_step: float = np.inf,
         first_step: float | None = None,
         max_switches: int = 10_000_000,
+        max_steps: int = MOST_STEPS,
     ) -> Sensitivities:
         """Runs the system together with derivatives by parameters, and by values of components at
         the start, through every event. The rest is as in `solve`.
@@ -166,9 +174,9 @@ class FormulaSystem:
         >>> found.t[:2].round(9).tolist(), found.t_by[1].round(9).tolist()
         ([1.0, 1.5], [1.0, 0.305810398])
         """
-        rerun = self._arguments(
-            (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)
-        )
+        steps, most = (max_step, first_step), (max_switches, max_steps)
+        begin = (t_span, y0, mode)
+        rerun = self._arguments(begin, parameters, method, (rtol, atol), steps, most)
         return sensitivities_of(self, by, rerun)
 
     def orbit(
@@ -307,8 +315,7 @@ class FormulaSystem:
         >>> bool(table.columns["same_events"].all())
         True
         """
-        options = (1e-10, 1e-12, np.inf, None, 1)
-        rerun = self._arguments((t_span, y0, mode), parameters, "dop853", options)
+        rerun = self._arguments((t_span, y0, mode), parameters)
         values, begin, end, _ = rerun
         with reported(progress, f"converge {name}") as report:
             found = self._native.converge(
@@ -320,19 +327,20 @@ class FormulaSystem:
         self,
         begin: tuple[ArrayLike | None, ArrayLike | None, str | None],
         parameters: Mapping[str, float] | None,
-        method: str,
-        options: tuple[float, float, float, float | None, int],
+        method: str = "dop853",
+        tolerances: tuple[ArrayLike, ArrayLike] = (1e-10, 1e-12),
+        steps: tuple[float, float | None] = (np.inf, None),
+        most: tuple[int, int] = (1, 1),
     ) -> Rerun:
         """The arguments of a run, checked."""
         t_span, y0, mode = begin
-        rtol, atol, max_step, first_step, max_switches = options
         values = self.values(parameters)
         start, end = (None, None) if t_span is None else span(t_span)
         state = None if y0 is None else state_at_start(y0).tolist()
         if mode is not None and mode not in self.modes:
             raise ValueError(f"mode = {mode!r}; expected one of {self.modes}")
         place = None if mode is None else self.modes.index(mode)
-        settings = settings_of(method, rtol, atol, max_step, first_step, max_switches)
+        settings = settings_of(method, tolerances, steps, most, self._size)
         return values, (place, start, state), end, settings
 
     def _solution(
@@ -346,18 +354,13 @@ class FormulaSystem:
         names = self._names
         if event_names is not None:
             names = replace(names, events=event_names)
-        extra, held, behind = with_variables(found, variables)
-        events = event_array(found, found["end_state"].size, names, extra)
-        for name, values in behind.items():
-            events["variables"][name] = values
-        return solution_of(
+        return Solution(
             found,
-            events,
             names,
             start=found["start_time"],
             dense=dense,
             guards="decided",
-            variables=held,
+            beside=with_variables(found, variables),
             again=(self, rerun),
         )
 

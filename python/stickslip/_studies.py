@@ -17,7 +17,7 @@ from stickslip import _native, _study_pictures
 from stickslip._shown import Shown, html_table
 from stickslip._tabular import Tabular
 from stickslip._progress import Progress, reported
-from stickslip.collisions import _threads
+from stickslip._collisions import _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

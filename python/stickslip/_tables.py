@@ -14,8 +14,8 @@ from stickslip import _native, _pictures
 from stickslip._arrays import real
 from stickslip._axes import svg
 from stickslip._progress import Progress, reported
-from stickslip.collisions import _threads
-from stickslip.impacts import Bodies
+from stickslip._collisions import _threads
+from stickslip._impacts import Bodies
 
 
 if TYPE_CHECKING:

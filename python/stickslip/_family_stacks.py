@@ -16,9 +16,9 @@ from stickslip._compiled import _count, _number
 from stickslip._family_atlases import Cancelled, FamilyAtlas, Itinerary, _label
 from stickslip._family_options import TraceOptions, VerifyOptions
 from stickslip._progress import Progress, reported
-from stickslip.atlases import AtlasWarning
-from stickslip.collisions import _threads
-from stickslip.families import HybridFamily, _check_calls, _survey
+from stickslip._atlases import AtlasWarning
+from stickslip._collisions import _threads
+from stickslip._families import HybridFamily, _check_calls, _survey
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

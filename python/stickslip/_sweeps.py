@@ -22,7 +22,7 @@ from stickslip import _laws, _stores
 from stickslip._blocks import QUANTITIES, Chunks, Engine, Parameter, Plan, Quantity, aligned
 from stickslip._laws import Law
 from stickslip._progress import Progress, check, reported
-from stickslip.collisions import (
+from stickslip._collisions import (
     Floats,
     Method,
     OnError,

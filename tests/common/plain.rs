@@ -2,9 +2,10 @@
 //!
 //! Overlap, velocities and history are stepped by the classical Runge–Kutta method with small
 //! steps, graded at both ends of contact. Switches are found by signs at the ends of steps and
-//! bisection. Nothing is shared with the solver or the model but the parameters.
+//! bisection. Nothing is shared with the solver or the model but the parameters. Several packages
+//! share this file.
 
-use stickslip::model::{Contact, Damping, End, HistoryOf, Normal, Tangential};
+use crate::model::{Collision, Contact, CoulombTest, Damping, End, HistoryOf, Normal, Tangential};
 
 /// Longest step in units of 1/(1 + √κ).
 const STEP: f64 = 5e-3;
@@ -132,17 +133,32 @@ impl Plain {
         self.0.tangential_damping() * self.eta(y[0]) * y[2]
     }
 
-    /// The force of spring and dashpot.
+    /// The force of the spring.
+    fn spring(&self, y: &State) -> f64 {
+        match self.0.law().history {
+            HistoryOf::None => 0.0,
+            HistoryOf::Force => y[3],
+            HistoryOf::Displacement => self.stiffness(y[0]) * y[3],
+        }
+    }
+
+    /// The part of the dashpot's force for which Coulomb's limit holds.
+    fn tested_dashpot(&self, y: &State) -> f64 {
+        let law = self.0.law();
+        let tested = law.coulomb_test == CoulombTest::Total || law.history == HistoryOf::None;
+        if tested { self.dashpot(y) } else { 0.0 }
+    }
+
+    /// The force for which Coulomb's limit holds.
     fn trial(&self, y: &State) -> f64 {
-        let spring = if self.of_force() { y[3] } else { self.stiffness(y[0]) * y[3] };
-        spring + self.dashpot(y)
+        self.spring(y) + self.tested_dashpot(y)
     }
 
     fn slope(&self, regime: Regime, y: &State) -> State {
         let [x, v, w, h] = *y;
         let force = self.force(y);
         let pull = match regime {
-            Regime::Stick => self.trial(y),
+            Regime::Stick => self.spring(y) + self.dashpot(y),
             Regime::Slip(side) => side * force.abs(),
         };
         let mut stretch = if self.of_force() { self.stiffness(x) * w } else { w };
@@ -164,7 +180,7 @@ impl Plain {
 
     /// Sets the history such that spring and dashpot have the force `size`.
     fn set(&self, y: &mut State, size: f64) {
-        let spring = size - self.dashpot(y);
+        let spring = size - self.tested_dashpot(y);
         y[3] = if self.of_force() { spring } else { spring / self.stiffness(y[0]) };
     }
 
@@ -172,6 +188,9 @@ impl Plain {
     fn leaves(&self, regime: Regime, y: &State) -> bool {
         match regime {
             Regime::Stick => self.trial(y).abs() > self.force(y).abs(),
+            Regime::Slip(_) if self.0.law().history == HistoryOf::None => {
+                self.trial(y).abs() < self.force(y).abs()
+            }
             Regime::Slip(side) => {
                 // What a short stick phase would do, by central differences.
                 let mut start = *y;
@@ -207,4 +226,26 @@ impl Plain {
             same => same,
         }
     }
+}
+
+/// The itinerary of a collision up to `end` without phases that plain time does not resolve.
+pub fn lasting(collision: &Collision, end: f64) -> String {
+    let itinerary = collision.itinerary();
+    let times = std::iter::once(0.0).chain(collision.switches.iter().map(|switch| switch.time));
+    longer(itinerary.chars().zip(times), end.min(collision.contact_time))
+}
+
+/// The phases that last, among phases with the times at which they begin.
+pub fn longer(phases: impl Iterator<Item = (char, f64)>, end: f64) -> String {
+    /// The shortest phase that counts.
+    const SHORTEST: f64 = 1e-5;
+    let phases: Vec<_> = phases.collect();
+    let ends = phases.iter().skip(1).map(|(_, time)| *time).chain([end]);
+    let mut itinerary = String::new();
+    for ((phase, begin), end) in phases.iter().zip(ends) {
+        if end - begin > SHORTEST && !itinerary.ends_with(*phase) {
+            itinerary.push(*phase);
+        }
+    }
+    itinerary
 }

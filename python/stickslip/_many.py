@@ -14,13 +14,13 @@ from stickslip._arrays import real
 from stickslip._blocks import Chunks, aligned, block_shape
 from stickslip._compiled import Function
 from stickslip._recorded import Recorded
-from stickslip._run_arguments import settings_of, span, state_at_start, times_within
+from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode
 from stickslip._progress import Progress, Report, reported
-from stickslip.collisions import _threads
-from stickslip.formulas import FormulaSystem
-from stickslip.hybrid import _arguments, _event_list, _Table
+from stickslip._collisions import _threads
+from stickslip._formulas import FormulaSystem
+from stickslip._hybrid import _arguments, _event_list, _Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,12 +48,13 @@ def solve_many(
     events: Function | Iterable[Function] | None = None,
     args: tuple[Any, ...] = (),
     method: str = "dop853",
-    rtol: float = 1e-10,
-    atol: float = 1e-12,
+    rtol: ArrayLike = 1e-10,
+    atol: ArrayLike = 1e-12,
     t_eval: ArrayLike | None = None,
     max_step: float = np.inf,
     first_step: float | None = None,
     max_switches: int = 10_000_000,
+    max_steps: int = MOST_STEPS,
     chunks: Chunks | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -94,7 +95,6 @@ def solve_many(
 
     given = dict(parameters or {})
     start, end = (None, None) if t_span is None else span(t_span)
-    settings = settings_of(method, rtol, atol, max_step, first_step, max_switches)
     state = None if y0 is None else state_at_start(y0)
     recorded: Recorded | None = None
     if isinstance(system, FormulaSystem):
@@ -117,6 +117,8 @@ def solve_many(
             raise ValueError(f"many runs are those of formulas, but {reason}") from None
         made, base = recorded.system, [0.0] * len(names)
     components = made.components
+    steps, most = (max_step, first_step), (max_switches, max_steps)
+    settings = settings_of(method, (rtol, atol), steps, most, len(components))
     unknown = [name for name in initial or {} if name not in components]
     if unknown:
         raise ValueError(f"initial: {unknown[0]!r} is no component; expected one of {components}")

@@ -16,8 +16,8 @@ from stickslip._laws import Law
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
 from stickslip._progress import Progress, reported
-from stickslip.atlases import AtlasWarning
-from stickslip.collisions import Floats, _threads
+from stickslip._atlases import AtlasWarning
+from stickslip._collisions import Floats, _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,7 +16,7 @@ from stickslip._laws import Law
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
 from stickslip._progress import Progress, reported
-from stickslip.collisions import _broadcast, _threads
+from stickslip._collisions import _broadcast, _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

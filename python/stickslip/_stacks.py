@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from stickslip import _atlas_results, _native
 from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
-from stickslip.atlases import AtlasWarning
-from stickslip.collisions import _threads
+from stickslip._atlases import AtlasWarning
+from stickslip._collisions import _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

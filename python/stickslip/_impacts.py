@@ -19,7 +19,7 @@ from stickslip._axes import svg
 from stickslip._laws import Law
 from stickslip._progress import keeping
 from stickslip._tabular import Columns, Tabular
-from stickslip.collisions import Collisions, Floats, Method, OnError, _strict, _threads
+from stickslip._collisions import Collisions, Floats, Method, OnError, _strict, _threads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,14 +103,27 @@ class Surface:
     mindlin_stiffness_kg_per_s2_m0_5: float | None = None
     #: Damping of the normal force in kg/(s mᵉ), with e = 0, 1/2 or 1/4 as the law says.
     damping_coefficient: float | None = None
-    #: Damping of the normal force without unit, of Tsuji's law or of a linear one.
+    #: Damping c of the normal force without unit, of Tsuji's law or of a linear one; half of it, or c
+    #: over the root of 5, is critical_damping_ratio.
     damping_ratio: float | None = None
     #: Ratio of tangential and normal damping; 0 without it.
     tangential_damping_ratio: float | None = None
+    #: Damping ratio as particle codes define it: the damping over the critical one.
+    critical_damping_ratio: float | None = None
+    #: Coefficient of normal restitution, instead of a damping.
+    e_n: float | None = None
+    #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.
+    e_n_at_m_per_s: float | None = None
 
     def _constants(self, law: Law | None) -> str:
         constants = asdict(self)
-        damping = ("damping_time_s", "damping_coefficient", "damping_ratio")
+        damping = (
+            "damping_time_s",
+            "damping_coefficient",
+            "damping_ratio",
+            "critical_damping_ratio",
+            "e_n",
+        )
         if law is None and all(constants[name] is None for name in damping):
             constants["damping_time_s"] = 0.0
         for name, value in constants.items():

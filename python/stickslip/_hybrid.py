@@ -9,6 +9,8 @@ from __future__ import annotations
 import operator
 import warnings
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from itertools import count
 from typing import Any, TypeAlias
 
@@ -17,9 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._compiled import Compiled, Function, _number
+from stickslip._progress import Progress, Report, reporting
 from stickslip._recorded import Recorded
-from stickslip._run_arguments import settings_of, span, state_at_start, times_within
-from stickslip._solutions import Names, Solution, event_array, solution_of, variable_columns
+from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
+from stickslip._solutions import Beside, Names, Solution, variable_columns
 from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
@@ -37,19 +40,21 @@ def solve(
     mode: str | Mode | None = None,
     *,
     method: str = "dop853",
-    rtol: float = 1e-10,
-    atol: float = 1e-12,
+    rtol: ArrayLike = 1e-10,
+    atol: ArrayLike = 1e-12,
     t_eval: ArrayLike | None = None,
     dense_output: bool = False,
     events: Function | Iterable[Function] | None = None,
     max_step: float = np.inf,
     first_step: float | None = None,
     max_switches: int = 10_000_000,
+    max_steps: int = MOST_STEPS,
     guard_scale: float | None = None,
     args: tuple[Any, ...] = (),
     parameters: Mapping[str, float] | None = None,
     sides: Mapping[str, int] | None = None,
     record: bool | None = None,
+    progress: Progress | None = None,
 ) -> Solution:
     """Runs a system from t_span[0] to t_span[1], through every switch.
 
@@ -58,7 +63,8 @@ def solve(
     the start, unless a guard changes something, and it may be infinite if something ends the run.
 
     method: "dop853" (order 8) or "dopri5" (order 5, also called "RK45"). rtol: 1e-15 to 0.1, atol:
-    above 0; the error of a step is below atol + rtol |y|. t_eval: sorted times at which `t` and `y`
+    above 0, each a number or one for each component; the error of a step is below atol + rtol |y|,
+    as a root mean square over the components. t_eval: sorted times at which `t` and `y`
     are wanted, and not at all steps; an empty list keeps events only, which is fastest.
     dense_output: whether `sol` is kept.
 
@@ -68,7 +74,7 @@ def solve(
     system is a function, an event that is exactly 0 at the start does not fire there.
 
     guard_scale: the shortest time on which guards and events change, if they change faster than the
-    state. max_switches: a run that has so many events stops. args: further arguments of all Python
+    state. max_switches, max_steps: a run that has so many events or steps stops. args: further arguments of all Python
     functions, after t and y (and after variables and signs, if the system has such). parameters:
     numbers that Python functions get before args, by names for `Solution.sensitivities`. sides: the
     sides of surfaces, 1, -1 or 0, on which a run starts where it could go on in several ways.
@@ -77,7 +83,8 @@ def solve(
     events are decided, if that is possible: they do not depend on anything that changes meanwhile.
     `Solution.guards` says so, or why not; the first time that guards are sampled and there is no
     guard_scale, a SampledGuardsWarning says so too. False turns this off; with True, what cannot be
-    recorded is an error.
+    recorded is an error. progress: called now and then with the thousandths of t_span that are done,
+    and 1000; True shows a bar on stderr.
 
     Functions get a state of their own, which they may keep and change. Their exceptions stop the
     run and come out as they are. TypeError and ValueError name the function that returned something
@@ -95,40 +102,64 @@ def solve(
     given = {name: _number(value, name) for name, value in (parameters or {}).items()}
     if given and table.has_compiled:
         raise TypeError("parameters are those of functions of Python; expected Compiled(f, [...])")
-    settings = settings_of(method, rtol, atol, max_step, first_step, max_switches)
+    steps, most = (max_step, first_step), (max_switches, max_steps)
+    settings = settings_of(method, (rtol, atol), steps, most, state.size)
     settings["guard_scale"] = None if guard_scale is None else _number(guard_scale, "guard_scale")
     times = None if t_eval is None else times_within(t_eval, start, end)
     if np.isinf(end) and not table.may_end:
         raise ValueError("t_span is infinite, and no guard or event is terminal")
     if end < start:
         table.refuse_changes()
-    begin = (first, start, state, table.sides(sides or {}))
-    reason = "record = False"
     if settings["guard_scale"] is not None and not settings["guard_scale"] > 0.0:
         raise ValueError(f"guard_scale = {guard_scale}; expected a number above 0")
-    if record is None and state.size > MOST_RECORDED:
-        reason = f"the state has more than {MOST_RECORDED} components; record=True records it"
-    elif record is not False:
-        found_recorded, reason = _try_recorded(
-            table, (first, start, end), state, settings, times, (bool(dense_output), given)
-        )
-        if found_recorded is not None:
-            return found_recorded
-        if record:
-            raise ValueError(f"record = True, but {reason}")
-    found = _native.run_hybrid(
-        table.system(),
-        (*given.values(), *table.args),
-        begin,
-        end,
-        settings,
-        (times, bool(dense_output)),
-    )
-    table.reason = reason
-    solution = table.solution(found, state.size, start, bool(dense_output))
+    job = _Job(table, (first, start, end), state, settings, times, bool(dense_output), given)
+    run = partial(_solved, job, table.sides(sides or {}), record)
+    solution = reporting(progress, "solve", run)
     if record is None and settings["guard_scale"] is None and not solution.decided:
         _warn_once(solution.guards)
     return solution
+
+
+@dataclass(frozen=True)
+class _Job:
+    """A run that is to be done."""
+
+    table: _Table
+    #: The mode, the start and the end.
+    begin: tuple[int, float, float]
+    state: Floats
+    settings: dict[str, Any]
+    times: Floats | None
+    dense: bool
+    #: Values of parameters of Python functions.
+    given: dict[str, float]
+
+
+def _solved(job: _Job, sides: list[int], record: bool | None, report: Report | None) -> Solution:
+    """Runs the formulas of a system, if it is recorded, and else its functions."""
+    table, (first, start, end) = job.table, job.begin
+    if record is False:
+        table.reason = "record = False"
+    elif record is None and job.state.size > MOST_RECORDED:
+        table.reason = (
+            f"the state has more than {MOST_RECORDED} components; record=True records it"
+        )
+    else:
+        found, table.reason = _try_recorded(job, report)
+        if found is not None:
+            return found
+        if record:
+            raise ValueError(f"record = True, but {table.reason}")
+    columns = _native.run_hybrid(
+        table.system(),
+        (*job.given.values(), *table.args),
+        (first, start, job.state, sides),
+        end,
+        job.settings,
+        (job.times, job.dense),
+        report,
+    )
+    return table.solution(columns, start, job.dense)
 
 
 class SampledGuardsWarning(UserWarning):
@@ -152,22 +183,16 @@ def _warn_once(reason: str) -> None:
         )
 
 
-def _try_recorded(
-    table: _Table,
-    begin: tuple[int, float, float],
-    state: Floats,
-    settings: dict[str, Any],
-    times: Floats | None,
-    more: tuple[bool, dict[str, float]],
-) -> tuple[Solution | None, str]:
+def _try_recorded(job: _Job, report: Report | None) -> tuple[Solution | None, str]:
     """The solution of the recorded system, or why there is none."""
-    if begin[2] <= begin[1]:
+    first, start, end = job.begin
+    if end <= start:
         return None, "the run goes backwards"
     try:
-        dense, given = more
-        recorded = Recorded(table, begin[:2], state, list(given), list(given.values()))
-        wanted = None if times is None else times.tolist()
-        return recorded.solve(begin, settings, wanted, dense), ""
+        names, values = list(job.given), list(job.given.values())
+        recorded = Recorded(job.table, (first, start), job.state, names, values)
+        wanted = None if job.times is None else job.times.tolist()
+        return recorded.solve(job.begin, job.settings, wanted, job.dense, report), ""
     except (CannotRecord, _native.ComputationError) as reason:
         return None, str(reason)
 
@@ -379,39 +404,41 @@ class _Table:
 
         return mode_and_state
 
-    def solution(
-        self, found: dict[str, Any], dimension: int, start: float, dense: bool
-    ) -> Solution:
+    def solution(self, found: dict[str, Any], start: float, dense: bool) -> Solution:
         """The result that Python sees."""
         # The native module counts modes with their variables and sides.
         modes = found["seen_modes"].tolist()
         names = [self.names[mode] for mode in modes]
         guards = [self.places[mode] for mode in modes]
-        variables = self.variables.columns(found["seen_variables"].reshape(len(modes), -1))
-        sides = self.signs.columns(found["seen_sides"].reshape(len(modes), -1))
-        extra = variable_columns(self.variables)
-        if self.signs:
-            signs = [(name, "i1") for name in self.signs.names]
-            extra += [("sides_from", signs), ("sides_to", signs), ("unique", "?")]
-        named = Names(names, guards, self.event_names)
-        events = event_array(found, dimension, named, extra)
-        left, to = found["event_from"], found["event_to"]
-        for name, values in variables.items():
-            events["variables"][name] = values[to]
-        for name, values in sides.items():
-            events["sides_from"][name] = values[left]
-            events["sides_to"][name] = values[to]
-        if self.signs:
-            events["unique"] = found["seen_unique"][to]
-        return solution_of(
+        return Solution(
             found,
-            events,
-            named,
+            Names(names, guards, self.event_names),
             start=start,
             dense=dense,
             guards="decided" if found["decided"] else f"sampled: {self.reason}",
-            variables={name: values[found["modes"]] for name, values in variables.items()},
-            sides={name: values[found["modes"]] for name, values in sides.items()},
+            beside=self.beside(found) if self.variables or self.signs else None,
+        )
+
+    def beside(self, found: dict[str, Any]) -> Beside:
+        """Variables, and sides of surfaces."""
+        count = len(found["seen_modes"])
+        variables = self.variables.columns(found["seen_variables"].reshape(count, -1))
+        sides = self.signs.columns(found["seen_sides"].reshape(count, -1))
+        at, left, to = found["modes"], found["event_from"], found["event_to"]
+        columns, behind = variable_columns(self.variables), dict[str, Any]()
+        if self.variables:
+            behind["variables"] = {name: values[to] for name, values in variables.items()}
+        if self.signs:
+            signs = [(name, "i1") for name in self.signs.names]
+            columns += [("sides_from", signs), ("sides_to", signs), ("unique", "?")]
+            behind["sides_from"] = {name: values[left] for name, values in sides.items()}
+            behind["sides_to"] = {name: values[to] for name, values in sides.items()}
+            behind["unique"] = found["seen_unique"][to]
+        return Beside(
+            {name: values[at] for name, values in variables.items()},
+            {name: values[at] for name, values in sides.items()},
+            columns,
+            behind,
         )
 
 

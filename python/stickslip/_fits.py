@@ -18,8 +18,8 @@ from stickslip._kept import Kept
 from stickslip._laws import Law
 from stickslip._tabular import Columns, Tabular
 from stickslip._progress import Progress, reported
-from stickslip.collisions import _threads
-from stickslip.impacts import Bodies
+from stickslip._collisions import _threads
+from stickslip._impacts import Bodies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,6 +90,17 @@ class Fit(Tabular):
         points: properties of the measured points. The result is the axes, one for each quantity.
         """
         return _pictures.fit(self, ax, points)
+
+    def input(self, code: str, bodies: Bodies) -> str:
+        """The lines with which a particle code computes the contacts of the best fit.
+
+        code: "lammps", "liggghts", "yade", "mfix" or "mercury". bodies: those of the fit. A
+        ValueError says why if the code does not have the law, or not with these constants.
+        """
+        if isinstance(self._native, Kept):
+            raise ValueError("a fit that was stored has no bodies; expected one that was made here")
+        found: str = self._native.input(bodies._pair, code)
+        return found
 
     def picture(self) -> str | None:
         """Data, fit and the boundaries of its switches over the angle as an SVG document."""

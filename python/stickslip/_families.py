@@ -7,7 +7,6 @@ every curve in a window of the parameters on which the sequence of events of its
 from __future__ import annotations
 
 import graphlib
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
@@ -36,6 +35,7 @@ from stickslip._family_atlases import (
     _margin,
     _objects,
     _pairs,
+    finished,
 )
 from stickslip._family_options import TraceOptions, VerifyOptions, _json
 from stickslip._progress import Progress, check, reported
@@ -44,11 +44,10 @@ from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular, flat
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode, _check_function
-from stickslip.atlases import AtlasWarning
-from stickslip.collisions import Floats, _threads
-from stickslip._run_arguments import settings_of, span, state_at_start
-from stickslip.formulas import FormulaSystem
-from stickslip.hybrid import MOST_RECORDED, _arguments, _callee, _Table
+from stickslip._collisions import Floats, _threads
+from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start
+from stickslip._formulas import FormulaSystem
+from stickslip._hybrid import MOST_RECORDED, _arguments, _callee, _Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -207,7 +206,9 @@ class HybridFamily:
                 for guard in source.guards:
                     for what, function in (("reset", guard.reset), ("condition", guard.condition)):
                         _check_parameters(function, f"the {what} of guard {guard.name!r}")
-        settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
+        settings = settings_of(
+            "dop853", (rtol, atol), (max_step, first_step), (max_switches, MOST_STEPS)
+        )
         settings["guard_scale"] = (
             None if guard_scale is None else _number(guard_scale, "guard_scale")
         )
@@ -329,7 +330,9 @@ class HybridFamily:
                 raise ValueError(f"{axis!r} is no parameter; expected one of {', '.join(known)}")
         if end is not None and np.isnan(_number(end, "end")):
             raise ValueError(f"end = {end!r}; expected a number")
-        settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
+        settings = settings_of(
+            "dop853", (rtol, atol), (max_step, first_step), (max_switches, MOST_STEPS)
+        )
         family = cls.__new__(cls)
         family._made = partial(
             cls.of, system, x, y, parameters=parameters, end=end, name=name, rtol=rtol, atol=atol,
@@ -468,7 +471,7 @@ def trace_family(
     family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
     with reported(progress, f"trace of {family.name}") as report:
         found = family._native.trace(window, text, _threads(threads), (report, cancelled))
-    return _finish(found)
+    return finished(found)
 
 
 def _survey(
@@ -500,18 +503,6 @@ def _check_calls(progress: Any, cancelled: Any) -> None:
     for name, function in (("progress", progress), ("cancelled", cancelled)):
         if function is not None and not callable(function):
             raise TypeError(f"{name} is of type {type(function).__name__}; expected a callable")
-
-
-def _finish(found: tuple[_native.FamilyAtlas, BaseException | None]) -> FamilyAtlas:
-    """The atlas, unless an exception has ended the trace early."""
-    atlas, error = FamilyAtlas(found[0]), found[1]
-    if isinstance(error, KeyboardInterrupt):
-        raise TraceInterrupted(atlas) from error
-    if error is not None:
-        raise error
-    if atlas.finished and atlas.objection is not None:
-        warnings.warn(f"the atlas may be wrong: {atlas.objection}", AtlasWarning, stacklevel=3)
-    return atlas
 
 
 def _places(system: HybridSystem) -> tuple[list[list[int]], list[str]]:

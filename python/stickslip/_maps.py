@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip import _laws
 from stickslip._laws import Law
-from stickslip.collisions import (
+from stickslip._collisions import (
     Floats,
     Method,
     OnError,

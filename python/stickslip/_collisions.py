@@ -384,7 +384,7 @@ class Collisions(Tabular):
         >>> dict(found.sizes), int(found.switch_count.sel(kappa=63, psi=0.5))
         ({'psi': 2, 'kappa': 2}, 6)
         """
-        from stickslip.maps import ATTRIBUTES
+        from stickslip._maps import ATTRIBUTES
 
         xr = library("xarray", "xarray", "for to_xarray")
         given = {name: getattr(self, name) for name in ("kappa", "psi", "damping")}
