@@ -14,8 +14,8 @@ from stickslip import _native
 
 #: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz"),
 #: damping ("none", "linear", "viscoelastic", "tsuji"), tangential ("constant", "mindlin"), history
-#: ("displacement", "force"), rescaled, limit_damping (bool), end ("force", "overlap"). A term that is
-#: not given is that of the paper's law.
+#: ("displacement", "force", "none"), rescaled, limit_damping (bool), end ("force", "overlap"),
+#: coulomb_test ("total", "spring"). A term that is not given is that of the paper's law.
 Law: TypeAlias = str | Mapping[str, Any]
 
 
@@ -44,6 +44,47 @@ def laws() -> dict[str, NamedLaw]:
     'linear'
     """
     return {fields["name"]: NamedLaw(**fields) for fields in json.loads(_native.laws())}
+
+
+@dataclass(frozen=True)
+class Keyword:
+    """A keyword with which a particle code takes a coefficient of normal restitution."""
+
+    keyword: str
+    #: Where its formula was read.
+    source: str
+    #: The scaled damping that the code computes.
+    damping: float
+    #: What the code reaches with it, without errors of time steps.
+    e_n: float
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """What it takes to have a coefficient of normal restitution."""
+
+    e_n: float
+    #: The scaled damping of the law that has it.
+    damping: float
+    #: The damping over the critical one; None where e_n depends on the velocity.
+    critical_damping_ratio: float | None
+    #: The keywords of the law's code.
+    keywords: tuple[Keyword, ...]
+
+
+def restitution(e_n: float, law: Law | None = None) -> Restitution:
+    """The damping with which a contact law has the coefficient of normal restitution e_n.
+
+    e_n: above 0, at most 1. law: as in `collide`. The damping is in closed form where that is known,
+    and otherwise such that e_n is within 1e-12. A ValueError says if no damping of the law has e_n.
+
+    >>> found = restitution(0.8, "liggghts/hertz/history")
+    >>> found.keywords[0].keyword, round(found.keywords[0].e_n, 12)
+    ('coefficientRestitution', 0.8)
+    """
+    fields = json.loads(_native.restitution(arguments(law, 0.0), float(e_n)))
+    keywords = tuple(Keyword(**one) for one in fields.pop("keywords"))
+    return Restitution(**fields, keywords=keywords)
 
 
 def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
@@ -84,6 +125,8 @@ def _objection(text: str) -> str:
     for one in known.values():
         for name, value in one.law.items():
             values.setdefault(name, {})[value] = None
+    # A usual term is left out of a law.
+    values.setdefault("coulomb_test", {})["total"] = None
     for name, value in terms.items():
         if name not in values:
             listed = f"{_listed(values)}{_near(name, values)}"

@@ -40,6 +40,10 @@ def test_the_example_in_si_units() -> None:
     assert found.data["mindlin"]["excluded"]
     again = stickslip.fit(data, bodies, speed_m_per_s=3.9, ranges={"kappa": (1, 10)}, threads=1)
     assert again.data == found.data
+    lines = found.input("lammps", bodies)
+    assert "tangential linear_history" in lines and repr(found.best.stiffness) in lines
+    with pytest.raises(ValueError, match="mfix has no input for these contacts"):
+        found.input("mfix", bodies)
 
 
 def test_missing_values_and_errors() -> None:

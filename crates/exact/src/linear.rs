@@ -25,7 +25,7 @@ use crate::exact::ExactError;
 use normal::{Moment, Motion, Normal, Place, Stage};
 use oscillator::Oscillator;
 use slip::Drive;
-use stickslip_contact::{Collision, Contact, Damping, Normal as Elastic, Tangential};
+use stickslip_contact::{Collision, Contact, CoulombTest, Damping, Normal as Elastic, Tangential};
 
 /// How many times ε the sum of the sizes of its terms a number may be off.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -36,13 +36,17 @@ fn unless_rounding(value: f64, size: f64) -> f64 {
 }
 
 /// Whether a contact is linear: its normal force is F = x + a v, or x without damping, and the
-/// stiffness of its spring is constant and its history not rescaled.
+/// stiffness of its spring is constant, its history not rescaled, and Coulomb's limit holds for
+/// spring and dashpot together.
 #[must_use]
 pub fn solves(contact: &Contact) -> bool {
     let law = contact.law();
     law.normal == Elastic::Linear
         && law.tangential == Tangential::Constant
+        && law.remembers()
         && !law.rescaled
+        && (law.coulomb_test == CoulombTest::Total
+            || contact.damping() * contact.tangential_damping() == 0.0)
         && (contact.damping() == 0.0 || law.damping == Damping::Linear)
 }
 

@@ -18,6 +18,7 @@
 //! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
 //! | [`spheres`] | SI units: [`quantity`](spheres::quantity), [`bodies`](spheres::bodies), [`scaling`](spheres::scaling) to a [`Contact`], [`encounter`](spheres::encounter) in three dimensions, its [`Outcome`](spheres::Outcome) and [`ImpactReport`](spheres::ImpactReport) |
 //! | [`limits`] | [`normal`](limits::normal), [`coulomb`](limits::coulomb), [`largest`](limits::largest), [`inner`](limits::inner): closed forms and limits to compare with |
+//! | | [`restitution`]: the damping with which a law has a coefficient of normal restitution |
 //! | | [`text`]: numbers in sentences and pictures |
 //!
 //! With the feature `serde`, results serialise themselves, and `document` says what computed them.
@@ -35,6 +36,7 @@
 
 mod engines;
 pub mod limits;
+pub mod restitution;
 pub mod spheres;
 
 #[cfg(feature = "serde")]
@@ -54,9 +56,9 @@ pub use spheres::Reduction;
 pub use stickslip_contact::domain::OutOfDomain;
 #[doc(inline)]
 pub use stickslip_contact::{
-    Collision, Contact, Damping, End, EnergyLedger, FEW_SWITCHES, GivenValue, HistoryOf,
-    InvalidValue, Law, Normal, NotFinite, OtherLaw, Regime, Side, SpringEnergy, Switch, Switches,
-    Tangential, general, presets, regularized,
+    Collision, Contact, CoulombTest, Damping, End, EnergyLedger, FEW_SWITCHES, GivenValue,
+    HistoryOf, InvalidValue, Law, Normal, NotFinite, OtherLaw, Regime, Side, SpringEnergy, Switch,
+    Switches, Tangential, general, presets, regularized,
 };
 #[doc(inline)]
 pub use stickslip_exact::{exact, linear};

@@ -39,6 +39,8 @@ mod search;
 mod settings;
 mod survey;
 
+use stickslip_model::restitution::RestitutionError;
+use stickslip_model::spheres::BodyPair;
 use stickslip_model::{CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
@@ -208,6 +210,20 @@ pub fn predicted(
     angles_rad.iter().map(predicted).collect()
 }
 
+impl Fit {
+    /// The two bodies with the values of the best minimum. `None` in scaled units.
+    ///
+    /// # Errors
+    /// [`FitError`]: they have no impact at the speed of the fit.
+    pub fn best_pair(&self, bodies: &Bodies) -> Result<Option<BodyPair>, FitError> {
+        let (Some(speed), Some(best)) = (self.speed_m_per_s, self.minima.first()) else {
+            return Ok(None);
+        };
+        let units = bodies.units(speed)?;
+        Ok(Some(bodies.with(&units, &best.values)))
+    }
+}
+
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
@@ -293,6 +309,12 @@ pub enum FitError {
         /// The name.
         name: &'static str,
     },
+    /// The stiffness of a spring that is not there is free.
+    #[error("{name} is free, but the law has no spring; expected other free numbers")]
+    NoSpring {
+        /// The name.
+        name: &'static str,
+    },
     /// The range of the damping has contacts that never end.
     #[error("damping up to {high:?} has contacts that never end; expected a range below {most:?}")]
     Endless {
@@ -313,14 +335,9 @@ pub enum FitError {
     /// The boundaries cannot be traced.
     #[error(transparent)]
     Boundaries(#[from] Box<AtlasError>),
-    /// No damping has a given ε_n.
-    #[error("no damping of this law has eps_n = {eps_n:?}; expected {least:?} to 1")]
-    Unreachable {
-        /// The coefficient.
-        eps_n: f64,
-        /// The least that was reached.
-        least: f64,
-    },
+    /// No damping has a given ε_n, or it cannot be found.
+    #[error(transparent)]
+    Restitution(#[from] RestitutionError),
     /// A search has no places to start from.
     #[error("a search has no places to start from")]
     NoPlaces,

@@ -9,6 +9,8 @@
 //! [`tables`]: the restitution over a window of parameters, to be looked up in nanoseconds, with a
 //! bound of its error.
 //!
+//! [`inputs`]: the lines with which a particle code computes the contacts of two bodies.
+//!
 //! Each question is a function from plain settings to a result. Parallel loops run on the rayon
 //! pool of the caller, and results do not depend on the number of threads.
 //!
@@ -28,6 +30,7 @@
 //! ```
 
 pub mod fit;
+pub mod inputs;
 pub mod tables;
 pub mod time_steps;
 

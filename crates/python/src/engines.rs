@@ -1,5 +1,6 @@
 //! What computes collisions.
 
+use std::ffi::OsString;
 use std::fmt::Display;
 
 use pyo3::prelude::*;
@@ -71,6 +72,17 @@ pub fn laws() -> PyResult<String> {
     Ok(Value::from(entries.map_err(failed)?).to_string())
 }
 
+/// Which damping has a coefficient of normal restitution, for a law with a name or as JSON, and
+/// what its code makes of the coefficient, as JSON.
+#[pyfunction]
+pub fn restitution(law: LawChoice, e_n: f64) -> PyResult<String> {
+    let found = match stickslip_model::restitution::of(&law.0, e_n).map_err(bad_input)? {
+        Some(found) => found,
+        None => stickslip_model::restitution::of_law(law.law()?.0, e_n).map_err(bad_input)?,
+    };
+    serde_json::to_string(&found).map_err(failed)
+}
+
 /// A result with the layout `schema`, as the JSON that the program prints.
 pub fn document(
     schema: &str,
@@ -81,6 +93,12 @@ pub fn document(
     stickslip_model::document::new(schema, result, engine, (None, statistics))
         .map(|document| Value::Object(document).to_string())
         .map_err(failed)
+}
+
+/// Carries out a command line of the program, which begins with its name: the exit code.
+#[pyfunction]
+pub fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| stickslip_cli::program(arguments))
 }
 
 /// The version of the package.

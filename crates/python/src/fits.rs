@@ -6,6 +6,7 @@ use serde_json::to_string;
 use stickslip_plane::Range;
 use stickslip_plane::progress::Report;
 use stickslip_practice::fit::{self, Bodies, Column, FitError, Free, Settings, Values};
+use stickslip_practice::inputs::{self, Code};
 
 use crate::arrays::{expect_equal, numbers};
 use crate::background::watched;
@@ -60,6 +61,17 @@ impl Fit {
     /// The JSON that the program prints.
     fn json(&self) -> PyResult<String> {
         to_string(&self.0).map_err(failed)
+    }
+
+    /// The lines with which a particle code computes the contacts of the best fit.
+    fn input(&self, bodies: PyRef<'_, BodyPair>, code: &str) -> PyResult<String> {
+        let Some(code) = Code::find(code) else {
+            let names = Code::ALL.map(Code::name).join(", ");
+            return Err(bad_input(format!("code = {code:?}; expected one of {names}")));
+        };
+        let pair = self.0.best_pair(&bodies.fitted()).map_err(exception)?;
+        let pair = pair.ok_or_else(|| bad_input("bodies: the fit has none; expected its own"))?;
+        inputs::lines(code, &pair).map_err(bad_input)
     }
 
     /// Data, fit and boundaries over the angle, as an SVG document, if there is an angle.

@@ -44,6 +44,7 @@ fn laws() -> Vec<(&'static str, Law)> {
         rescaled: false,
         limit_damping: false,
         end: End::Overlap,
+        ..Law::PAPER
     };
     let limited = Law { limit_damping: true, ..law };
     vec![

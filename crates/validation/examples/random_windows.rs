@@ -104,6 +104,7 @@ fn law(random: &mut fastrand::Rng) -> Law {
         rescaled,
         limit_damping: limited && end == End::Overlap,
         end,
+        ..Law::PAPER
     }
 }
 

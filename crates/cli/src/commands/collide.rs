@@ -90,12 +90,12 @@ pub struct CollideArguments {
 /// Options contradict each other, a collision cannot be computed, or a file or standard output
 /// cannot be used.
 pub fn run(arguments: &CollideArguments) -> Result<(), Failure> {
-    let CollisionArguments { mu, alpha, damping } = arguments.collision;
+    let CollisionArguments { mu, alpha, damping, e_n } = arguments.collision;
     let CollideArguments { kappa, psi, ratio, .. } = *arguments;
     let (law, tangential) = arguments.law.chosen()?;
     let engine = arguments.method.engine((law, tangential))?;
     let tangential_damping = arguments.law.tangential_damping;
-    let given = Given { kappa, psi, ratio, mu, alpha, damping, tangential_damping, law };
+    let given = Given { kappa, psi, ratio, mu, alpha, damping, e_n, tangential_damping, law };
     let law_file = law::file(arguments.law.law.as_deref());
     match arguments.batch.files(&[law_file])? {
         Some(files) => many(files, &given, engine, arguments.estimate),
@@ -239,8 +239,8 @@ tangential velocity are also divided by μ/α. Numbers are written like 18, 1.5e
 /// What `collide --help` says last.
 const EXAMPLES: &str = "\
 Batch files:
-  The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping, tangential_damping;
-  the options of the same names give what the file does not. Other columns pass through. OUT.csv
+  The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping, e_n,
+  tangential_damping;  the options of the same names give what the file does not. Other columns pass through. OUT.csv
   has the columns of the input followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
   cannot be computed has no results; its status says why, and the exit code is 1.
 
@@ -261,6 +261,7 @@ Examples:
   stickslip collide --kappa 63 --psi 0.5 --course course.csv --animate collision.gif
   stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method dop853 --verbose
   stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
+  stickslip collide --kappa 18 --psi 1 --e-n 0.9 --law gran/hertz/history
   stickslip collide --kappa 18 --psi 1.99 --estimate
   stickslip collide --batch IN.csv --out OUT.csv --events EV.csv --threads 4
   stickslip collide --batch PSI.csv --kappa 18 > OUT.csv

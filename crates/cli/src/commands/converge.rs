@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use stickslip_figure::pictures::studies as pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::Given;
+use stickslip_model::Law;
 use stickslip_studies::convergence::{self, Settings};
 use stickslip_studies::own_system;
 
@@ -80,12 +81,12 @@ pub fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
 /// The collisions of the options, or the usual ones.
 fn collisions(arguments: &ConvergeArguments) -> Result<Settings, Failure> {
     let ConvergeArguments { kappa, psi, ratio, collision, .. } = *arguments;
-    let CollisionArguments { mu, alpha, damping } = collision;
+    let CollisionArguments { mu, alpha, damping, e_n } = collision;
     let settings = if [kappa, psi, ratio, mu, alpha].iter().all(Option::is_none) {
-        let usual = Settings::usual(damping.unwrap_or(0.0));
+        let usual = Settings::usual(collision.damping(Law::PAPER)?);
         usual.map_err(|invalid| Failure::Usage(invalid.to_string()))?
     } else {
-        let given = Given { kappa, psi, ratio, mu, alpha, damping, ..Given::default() };
+        let given = Given { kappa, psi, ratio, mu, alpha, damping, e_n, ..Given::default() };
         Settings { contacts: vec![contact(&given)?] }
     };
     settings.validate().map_err(study::refused)?;

@@ -1,5 +1,6 @@
 //! `fit`: a contact law fitted to measured impacts, printed and drawn.
 
+mod input;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Law, presets};
 use stickslip_plane::Range;
 use stickslip_practice::fit::{self, Bodies, Free, Settings, Values};
+use stickslip_practice::inputs::Code;
 
 use crate::error::Failure;
 use crate::output::console::{deliver, print};
@@ -94,6 +96,12 @@ pub struct FitArguments {
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
     pub format: Format,
 
+    /// Input of a particle code with the best fit, printed instead of the tables: lammps, liggghts,
+    /// yade, mfix or mercury
+    #[arg(long, value_name = "CODE", help_heading = "Output", requires = "bodies")]
+    #[arg(conflicts_with = "format", value_parser = code)]
+    pub write: Option<Code>,
+
     /// Picture of data, fit and boundaries, which are printed as well
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     #[arg(value_parser = files::picture())]
@@ -120,6 +128,10 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
             Failure::Usage(format!("--plot has nothing to draw; {expected}"))
         })?;
         deliver([plot.write(Ok(picture))?], "")?;
+    }
+    if let Some(code) = arguments.write {
+        let text = input::of(&result, &settings.bodies, code, &arguments.threads)?;
+        return print(|out| out.write_all(text.as_bytes()));
     }
     print(|out| match arguments.format {
         Format::Json => json::lines(out, &result),
@@ -231,6 +243,14 @@ fn scaled(arguments: &FitArguments, law: Law) -> Result<Bodies, Failure> {
         .map_err(|invalid| Failure::Usage(invalid.to_string()))
 }
 
+/// Reads the name of a particle code.
+fn code(text: &str) -> Result<Code, String> {
+    Code::find(text).ok_or_else(|| {
+        let names = Code::ALL.map(Code::name).join(", ");
+        format!("no particle code is named {text:?}; expected one of {names}")
+    })
+}
+
 /// Reads the name of what is fitted.
 fn free(text: &str) -> Result<Free, String> {
     Free::find(text.trim()).ok_or_else(|| {
@@ -277,6 +297,8 @@ Examples:
   stickslip fit examples/oblique_impacts.csv --bodies examples/aluminium_oxide_on_glass.json \\
     --speed 3.9 --plot fit.svg
   stickslip fit data.csv --law gran/hertz/history --free kappa,mu --eps-n 0.95
+  stickslip fit examples/oblique_impacts.csv --bodies examples/aluminium_oxide_on_glass.json \\
+    --speed 3.9 --write lammps
   stickslip fit data.csv --free kappa,mu --range kappa=1:80 --format json
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -11,7 +11,9 @@ use stickslip_files::output::directory::prepare;
 use stickslip_files::output::file::write;
 use stickslip_files::output::json;
 use stickslip_files::output::study::write_study;
+use stickslip_model::Damping;
 use stickslip_model::presets::{self, Preset};
+use stickslip_model::restitution::{self, Keyword, Restitution};
 use stickslip_reproduction::ReproductionError;
 use stickslip_reproduction::figures::Section;
 use stickslip_studies::contact_laws::{self, Settings};
@@ -34,6 +36,12 @@ pub struct LawsArguments {
     /// How it is printed; the JSON of one law is a file for --law
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
+
+    /// Coefficient of normal restitution: prints which damping has it, and what the keywords of the
+    /// codes make of it; above 0, at most 1
+    #[arg(long, value_name = "E", conflicts_with = "out", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::NormalRestitution.parse(text))]
+    pub e_n: Option<f64>,
 
     /// Directory for a page that shows what the laws do, DIR/laws.html, and its data; created if it
     /// is missing
@@ -78,6 +86,9 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
         return Ok(());
     }
     let preset = arguments.name.as_deref().map(law::named).transpose()?;
+    if let Some(e_n) = arguments.e_n {
+        return restitutions(arguments.name.as_deref(), e_n, arguments.format);
+    }
     print(|out| match (preset, arguments.format) {
         (Some(preset), Format::Json) => json::lines(out, &preset.law),
         (Some(preset), Format::Table) => one(out, &preset),
@@ -89,6 +100,45 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
         }
         (None, Format::Table) => all(out),
     })
+}
+
+/// Prints which damping has an ε_n, for one law or all that have damping.
+fn restitutions(name: Option<&str>, e_n: f64, format: Format) -> Result<(), Failure> {
+    let damped = presets::ALL.iter().filter(|preset| preset.law.damping != Damping::None);
+    let names = name.map_or_else(|| damped.map(|preset| preset.name).collect(), |it| vec![it]);
+    let mut found = Vec::new();
+    for name in names {
+        let refused = |error| Failure::Usage(format!("--e-n with the law {name}: {error}"));
+        if let Some(restitution) = restitution::of(name, e_n).map_err(refused)? {
+            found.push(OfLaw { name, restitution });
+        }
+    }
+    print(|out| match format {
+        Format::Json if name.is_some() => json::lines(out, &found.first()),
+        Format::Json => json::lines(out, &found),
+        Format::Table => {
+            let title = format!("e_n = {e_n}");
+            writeln!(out, "{title:<46} {:>9} {:>9}  keyword: e_n reached", "damping a", "ratio ζ")?;
+            for OfLaw { name, restitution } in &found {
+                let ratio = restitution.critical_damping_ratio;
+                let ratio = ratio.map_or_else(String::new, |ratio| format!("{ratio:.6}"));
+                let reached = |it: &Keyword| format!("{}: {:.4}", it.keyword, it.e_n);
+                let reached: Vec<_> = restitution.keywords.iter().map(reached).collect();
+                let (damping, reached) = (restitution.damping, reached.join("; "));
+                let line = format!("{name:<46} {damping:>9.6} {ratio:>9}  {reached}");
+                writeln!(out, "{}", line.trim_end())?;
+            }
+            Ok(())
+        }
+    })
+}
+
+/// The restitution of a law, as `--format json` prints it.
+#[derive(Serialize)]
+struct OfLaw<'a> {
+    name: &'a str,
+    #[serde(flatten)]
+    restitution: Restitution,
 }
 
 /// The window and the dampings of the maps.
@@ -161,9 +211,11 @@ const ABOUT: &str = "\
 List the contact laws that have names, or print one of them: those of particle codes, by the codes' \
 own keywords, with their equations, where these were read, and what was compared.
 
-A law consists of seven terms, in JSON and here: normal (linear, hertz), damping (none, linear, \
-viscoelastic, tsuji), tangential (constant, mindlin), history (displacement, force), rescaled, \
-limit_damping (true, false), end (force, overlap). Every combination is a law.
+A law consists of eight terms, in JSON and here: normal (linear, hertz), damping (none, linear, \
+viscoelastic, tsuji), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
+limit_damping (true, false), end (force, overlap), coulomb_test (total, spring). Every combination \
+is a law. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
+holds for the spring alone, the dashpot acts in stick only.
 
 Quantities are scaled: x overlap, v its rate, w tangential velocity, F normal and Q tangential force, \
 y or q history; κ stiffness, a damping, b tangential damping. Hysteretic and adhesive laws have other \
@@ -179,6 +231,7 @@ Examples:
   stickslip laws gran/hertz/history
   stickslip laws granular/hertz/tsuji/mindlin+limit_damping --format json > law.json
   stickslip collide --kappa 3 --psi 0.4 --damping 0.3 --law law.json --tangential-damping 3.5
+  stickslip laws --e-n 0.8
   stickslip laws --out laws --damping 0.1
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -19,7 +19,7 @@ use stickslip_practice::time_steps::{self, Quantity, Scheme, Seconds, Settings, 
 use crate::error::Failure;
 use crate::output::console::{deliver, print};
 use crate::shared::Format;
-use crate::shared::collision::reduction;
+use crate::shared::collision::{damping_for, reduction};
 use crate::shared::files;
 use crate::shared::law::LawArguments;
 use crate::shared::study::refused;
@@ -52,6 +52,12 @@ pub struct TimestepArguments {
     #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
     pub damping: Option<f64>,
 
+    /// Coefficient of normal restitution, instead of --damping; above 0, at most 1
+    #[arg(long, value_name = "E", help_heading = "Impacts", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::NormalRestitution.parse(text))]
+    #[arg(conflicts_with = "damping")]
+    pub e_n: Option<f64>,
+
     /// Coefficient of friction μ, of which only the energy knows; above 0 [default: 0.4]
     #[arg(long, value_name = "M", help_heading = "Impacts", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
@@ -65,7 +71,7 @@ pub struct TimestepArguments {
     /// JSON file of an impact as `impact` reads it, instead of scaled parameters; - for standard
     /// input
     #[arg(long, value_name = "FILE.json", help_heading = "Impacts")]
-    #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "mu", "alpha"])]
+    #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "e_n", "mu", "alpha"])]
     #[arg(conflicts_with = "tangential_damping")]
     pub bodies: Option<PathBuf>,
 
@@ -170,11 +176,15 @@ fn scaled(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
         return Err(Failure::Usage(format!("--grid has no effect; {expected}")));
     }
     let (law, tangential_damping) = arguments.law.chosen()?;
+    let damping = match arguments.e_n {
+        Some(e_n) => damping_for(law, e_n)?,
+        None => arguments.damping.unwrap_or(0.0),
+    };
     let count = usize::from(arguments.grid.unwrap_or(GRID));
     let mut contacts = Vec::new();
     for kappa in kappa.values(count) {
         for psi in psi.values(count) {
-            let contact = Contact::new(kappa, psi, arguments.damping.unwrap_or(0.0))
+            let contact = Contact::new(kappa, psi, damping)
                 .and_then(|contact| contact.with_law(law, tangential_damping))
                 .map_err(|invalid| Failure::Usage(invalid.to_string()))?;
             contacts.push(contact);

@@ -168,7 +168,7 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
         }
     };
     let (law, tangential_damping) = arguments.law.chosen()?;
-    let damping = collisions.damping.unwrap_or(0.0);
+    let damping = collisions.damping(law)?;
     Ok(Frame { kappa, psi, ratio, damping, law, tangential_damping })
 }
 

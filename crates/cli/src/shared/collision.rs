@@ -2,7 +2,7 @@
 
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::{Given, ImpactParameter, Recipe, RecipeError};
-use stickslip_model::{Contact, Reduction};
+use stickslip_model::{Contact, Law, Reduction, restitution};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::RatioRange;
 
@@ -25,6 +25,32 @@ pub struct CollisionArguments {
     #[arg(long, value_name = "D", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
     pub damping: Option<f64>,
+
+    /// Coefficient of normal restitution, instead of --damping; above 0, at most 1
+    #[arg(long, value_name = "E", allow_hyphen_values = true, conflicts_with = "damping")]
+    #[arg(value_parser = |text: &str| Parameter::NormalRestitution.parse(text))]
+    pub e_n: Option<f64>,
+}
+
+impl CollisionArguments {
+    /// The scaled damping that the options give; without them 0.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: no damping of the law has the coefficient of restitution.
+    pub fn damping(&self, law: Law) -> Result<f64, Failure> {
+        match self.e_n {
+            Some(e_n) => damping_for(law, e_n),
+            None => Ok(self.damping.unwrap_or(0.0)),
+        }
+    }
+}
+
+/// The scaled damping with which a law has a coefficient of normal restitution.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is none.
+pub fn damping_for(law: Law, e_n: f64) -> Result<f64, Failure> {
+    restitution::damping(law, e_n).map_err(|error| Failure::Usage(format!("--e-n: {error}")))
 }
 
 /// The parameters of the collision that options give.
@@ -84,6 +110,9 @@ fn refused(error: RecipeError) -> Failure {
             "--psi and --ratio are both given; expected exactly one of them".to_owned()
         }
         RecipeError::GivenTwice { name } => format!("--{name} is given twice; expected it once"),
+        RecipeError::DampingTwice => {
+            "--damping and --e-n are both given; expected one of them".to_owned()
+        }
         RecipeError::Unused { name } => {
             format!("--{name} has no effect with --psi; expected with --ratio only")
         }

@@ -93,7 +93,7 @@ pub fn read(path: &Path) -> Result<(System, String), Failure> {
 }
 
 /// The name of a system in titles: that of its file.
-fn title(path: &Path) -> String {
+pub fn title(path: &Path) -> String {
     let name = source::shown(path).file_stem();
     name.map_or_else(String::new, |it| it.to_string_lossy().into_owned())
 }
@@ -102,7 +102,7 @@ fn title(path: &Path) -> String {
 ///
 /// # Errors
 /// [`Failure::Usage`]: there is no such parameter.
-fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
+pub fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     let mut values = system.values();
     for (name, value) in set {
         values[place(system, "--set", name)?] = *value;
@@ -277,7 +277,7 @@ pub fn time(text: &str) -> Result<f64, String> {
 }
 
 /// Reads `name=lo:hi`.
-fn axis(text: &str) -> Result<Axis, String> {
+pub fn axis(text: &str) -> Result<Axis, String> {
     const EXPECTED: &str = "expected NAME=LO:HI with LO below HI, such as mu=0.1:0.5";
     let (name, range) = text.split_once('=').ok_or(EXPECTED)?;
     let (low, high) = range.split_once(':').ok_or(EXPECTED)?;

@@ -126,7 +126,7 @@ fn another_law_in_scaled_units() {
 #[test]
 fn bad_data_and_options_are_refused() {
     let data = "centre_impact_angle_deg,centre_e_t\n10,0.7\n20,0.6\n";
-    let cases: [(&str, &str, &str); 27] = [
+    let cases: [(&str, &str, &str); 28] = [
         ("", "", "is empty; expected a header row"),
         ("centre_impact_angle_deg,centre_e_t\n", "", "has no rows"),
         ("centre_impact_angle_deg,centre_e_t\n10,\n", "", "0 data; expected 1 to"),
@@ -194,6 +194,7 @@ fn bad_data_and_options_are_refused() {
             "centre_rebound_angle_rad = -1.6 is out of range; expected an angle between -π/2",
         ),
         (data, "--law nonsense", "is neither a file nor a name"),
+        (data, "--law gran/hooke", "kappa is free, but the law has no spring"),
         (data, "--free kappa,k_t --mu 0.2", "kappa is free twice"),
         (data, "--free kappa", "--mu is missing"),
         (data, "--free kappa,mu --mu 0", "expected"),

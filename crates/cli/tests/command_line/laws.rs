@@ -30,6 +30,47 @@ fn a_law_is_listed_and_printed_as_a_file() {
 }
 
 #[test]
+fn restitution_is_an_input() {
+    let ran = stickslip("laws mfix/HERTZIAN --e-n 0.8 --format json");
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let damping = found["damping"].as_f64().unwrap();
+    // √5 ζ with ζ = −ln e/√(π² + ln² e), and 2 ζ for the code.
+    let log = -0.8_f64.ln();
+    let ratio = log / std::f64::consts::PI.hypot(log);
+    assert!((damping - 5.0_f64.sqrt() * ratio).abs() < 1e-15, "{found}");
+    let keyword = &found["keywords"][0];
+    assert!((keyword["damping"].as_f64().unwrap() - 2.0 * ratio).abs() < 1e-15, "{found}");
+    assert!((keyword["e_n"].as_f64().unwrap() - 0.819_152_472_7).abs() < 1e-9, "{found}");
+    let law = "--law mfix/HERTZIAN --kappa 3 --psi 0.4 --format json";
+    let given = stickslip(&format!("collide {law} --e-n 0.8"));
+    let same = stickslip(&format!("collide {law} --damping {damping:?}"));
+    assert_eq!((given.code, &given.stdout), (0, &same.stdout), "{}", given.stderr);
+
+    let directory = Workspace::new();
+    directory.write("in.csv", "psi,e_n\n0.4,0.8\n0.4,1\n0.4,2\n");
+    let ran = directory.run("collide --batch in.csv --kappa 3 --law gran/hertz/history");
+    let rows = rows(&ran.stdout);
+    assert!((rows[1][2].parse::<f64>().unwrap() - 0.8).abs() < 1e-12, "{}", ran.stdout);
+    assert!((rows[2][2].parse::<f64>().unwrap() - 1.0).abs() < 1e-12, "{}", ran.stdout);
+    assert!(ran.stdout.contains("out of range; expected a number above 0, at most 1"));
+    let undamped = "collide --kappa 3 --psi 0.4 --law yade/FrictPhys_CundallStrack --e-n 0.5";
+    let refused = stickslip(undamped);
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("no damping of this law has e_n = 0.5"), "{}", refused.stderr);
+}
+
+#[test]
+fn a_law_without_history_needs_no_stiffness() {
+    let ran = stickslip(
+        "collide --psi 0.5 --damping 0.3 --law gran/hooke --tangential-damping 1.75 --format json",
+    );
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert!((found["eps_t"].as_f64().unwrap() - 0.197_878).abs() < 6e-7, "{found}");
+    let spring = stickslip("collide --psi 0.5 --damping 0.3 --law gran/hooke/history");
+    assert!(spring.stderr.contains("--kappa is missing"), "{}", spring.stderr);
+}
+
+#[test]
 fn a_collision_is_the_same_by_name_by_file_and_in_a_batch() {
     let directory = Workspace::new();
     let name = "granular/hertz/tsuji/mindlin_rescale/force+limit_damping";
@@ -111,6 +152,8 @@ fn what_is_no_law_is_refused() {
     directory.write("list.json", list);
     for (law, expected, code) in [
         ("nowhere", "is neither a file nor a name", 2),
+        ("gran/hook/histroy", "`stickslip laws` lists; perhaps gran/hooke/history", 2),
+        ("GRAN/hertz", "perhaps gran/hertz/history", 2),
         ("law.json", "normal: unknown variant `hooke`, expected `linear` or `hertz`", 2),
         ("extra.json", "unknown field `stiffness`", 2),
         ("list.json", "is a list; expected an object with named fields", 2),

@@ -45,6 +45,7 @@ pub(crate) struct Equations {
     pub exponents: Exponents,
     kappa: f64,
     damping: f64,
+    /// The part of the tangential damping that Coulomb's limit holds for.
     tangential_damping: f64,
     /// v = by_v·V + by_u·u^{p−d}.
     by_v: f64,
@@ -61,6 +62,8 @@ pub(crate) struct Equations {
     /// Q = spring_force·u^ρ·[`SPRING`] + dashpot·u^d·[`W`].
     spring_force: f64,
     dashpot: f64,
+    /// The part of the dashpot that Coulomb's limit holds for.
+    tested: f64,
     /// The rate of [`SPRING`] is spring_rate·u^β·[`W`].
     spring_rate: f64,
 }
@@ -75,14 +78,15 @@ impl Equations {
         let (kappa, a) = (contact.kappa(), contact.damping());
         let strong = a >= STRONG;
         let by_v = if strong { a.powi(-3) } else { 1.0 };
-        let omega = kappa.sqrt();
+        let omega = if exponents.remembers { kappa.sqrt() } else { 0.0 };
         let scale = omega.sqrt().max(1.0);
+        let tangential_damping = contact.law().tested_damping(contact.tangential_damping());
         let velocity_unit = contact.psi().min(1.0);
         Self {
             exponents,
             kappa,
             damping: a,
-            tangential_damping: contact.tangential_damping(),
+            tangential_damping,
             by_v,
             per_v: if strong { a.powi(3) } else { 1.0 },
             by_u: if strong { -1.0 / a } else { 0.0 },
@@ -92,6 +96,7 @@ impl Equations {
             velocity_unit,
             spring_force: omega / scale * velocity_unit,
             dashpot: contact.tangential_damping() * a * velocity_unit,
+            tested: tangential_damping * a * velocity_unit,
             spring_rate: f64::from(exponents.n) * omega * scale,
         }
     }
@@ -106,9 +111,16 @@ impl Equations {
         let part = (1.0 - BORDER) / (1.0 - room);
         if self.exponents.damped {
             let tangential_damping = self.tangential_damping * part;
-            return Self { tangential_damping, dashpot: self.dashpot * part, ..self };
+            let [dashpot, tested] = [self.dashpot, self.tested].map(|it| it * part);
+            return Self { tangential_damping, dashpot, tested, ..self };
         }
         Self { kappa: self.kappa * part, spring_rate: self.spring_rate * part, ..self }
+    }
+
+    /// Whether there is no tangential force at all.
+    #[inline(always)]
+    pub fn is_frictionless(&self) -> bool {
+        !self.exponents.remembers && self.dashpot == 0.0
     }
 
     /// The state at the start of contact.
@@ -135,9 +147,10 @@ impl Equations {
     pub fn first_orders(&self) -> (u8, u8) {
         let e = self.exponents;
         let of = e.of(Stage::Main);
-        let spring = of.rho - of.shared + of.beta + 1;
+        // What is not there counts as if it began later.
+        let spring = if e.remembers { of.rho - of.shared + of.beta + 1 } else { u8::MAX };
         let dashpot = e.d - of.shared;
-        (dashpot, if self.dashpot > 0.0 { dashpot.min(spring) } else { spring })
+        (dashpot, if self.tested > 0.0 { dashpot.min(spring) } else { spring })
     }
 
     /// Whether limit and force start from zeros of third order and may nearly agree. A dense output
@@ -179,7 +192,7 @@ impl Equations {
                 stage: Stage::Main,
                 progress: Progress::Touched,
             };
-            let may_fall_behind = e.of(Stage::Main).rho == e.d;
+            let may_fall_behind = e.remembers && e.of(Stage::Main).rho == e.d;
             let excess = || self.stretching(mode, &powers(0.0), &self.start(psi));
             return [Some(1.0 - ratio), may_fall_behind.then(excess)];
         }
@@ -219,9 +232,20 @@ impl Equations {
     /// The size Q of the tangential force of spring and dashpot, divided by u^m.
     #[inline(always)]
     fn pull<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> T {
+        self.pull_with(self.dashpot, stage, u, y)
+    }
+
+    /// The part of that for which Coulomb's limit holds.
+    #[inline(always)]
+    fn tested_pull<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> T {
+        self.pull_with(self.tested, stage, u, y)
+    }
+
+    #[inline(always)]
+    fn pull_with<T: Number>(&self, dashpot: f64, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> T {
         let e = self.exponents.of(stage);
         u[e.rho - e.shared] * y[SPRING] * self.spring_force
-            + u[self.exponents.d - e.shared] * y[W] * self.dashpot
+            + u[self.exponents.d - e.shared] * y[W] * dashpot
     }
 
     /// The tangential force Q of spring and dashpot.
@@ -316,11 +340,13 @@ impl Equations {
         let dspring = u[of.beta] * y[W] * self.spring_rate;
         let ddspring = (lowered(u, of.beta) * v * y[W] + u[of.beta] * dw) * self.spring_rate;
         let spring = lifted(of.rho - of.shared, u, v, dv, Jet(y[SPRING], dspring, ddspring));
-        let pull1 = spring.1 * self.spring_force
-            + (lowered(u, e.d - of.shared) * v * y[W] + u[e.d - of.shared] * dw) * self.dashpot;
+        let damping1 = lowered(u, e.d - of.shared) * v * y[W] + u[e.d - of.shared] * dw;
+        let pull1 = spring.1 * self.spring_force + damping1 * self.dashpot;
         let ddw = (lowered(u, k) * v * pull + u[k] * pull1) * per_unit;
         let dashpot = lifted(e.d - of.shared, u, v, dv, Jet(y[W], dw, ddw));
-        let pull2 = spring.2 * self.spring_force + dashpot.2 * self.dashpot;
+        let pull = self.tested_pull(mode.stage, u, y);
+        let pull1 = spring.1 * self.spring_force + damping1 * self.tested;
+        let pull2 = spring.2 * self.spring_force + dashpot.2 * self.tested;
         let (sign, side) = (mode.stage.sign(), mode.side.sign());
         [-side, side].map(|side| {
             Jet(
@@ -341,10 +367,15 @@ impl Equations {
         let push = self.push(u, y);
         let end = if e.damped && mode.stage != Stage::Tail { push } else { y[U] };
         let (end, same, other) = match mode.regime {
-            Regime::Slip => (end, self.stretching(mode, u, y), T::from(1.0)),
+            Regime::Slip if e.remembers => (end, self.stretching(mode, u, y), T::from(1.0)),
+            Regime::Slip => {
+                let pull = self.tested_pull(mode.stage, u, y) * mode.side.sign();
+                let limit = u[e.d - of.shared] * push * mode.stage.sign();
+                (end, pull - limit, T::from(1.0))
+            }
             Regime::Stick => {
                 if mode.progress == Progress::Settled {
-                    let pull = self.pull(mode.stage, u, y) * mode.side.sign();
+                    let pull = self.tested_pull(mode.stage, u, y) * mode.side.sign();
                     let limit = u[e.d - of.shared] * push * mode.stage.sign();
                     (end, limit - pull, limit + pull)
                 } else {
@@ -400,8 +431,11 @@ impl Equations {
 
     /// The spring that makes the tangential force `size`, in units of u^m.
     fn spring_for(&self, stage: Stage, u: &Powers<f64>, y: &[f64; STATE], size: f64) -> f64 {
+        if !self.exponents.remembers {
+            return 0.0;
+        }
         let of = self.exponents.of(stage);
-        let rest = size - u[self.exponents.d - of.shared] * y[W] * self.dashpot;
+        let rest = size - u[self.exponents.d - of.shared] * y[W] * self.tested;
         rest / (u[of.rho - of.shared] * self.spring_force)
     }
 
@@ -439,7 +473,8 @@ impl Equations {
             _ => y[FAR_GAP] = far.0 / length,
         }
         y[FAR_RATE] = far.1 / rate;
-        if mode.progress != Progress::Switched {
+        // A limit that a history keeps is left with the rate 0.
+        if mode.progress != Progress::Switched || !self.exponents.remembers {
             y[RATE] = near.1 / rate;
         }
     }

@@ -15,6 +15,7 @@ use crate::law::{Damping, HistoryOf, Law, Normal, Tangential};
 ///
 /// where h is the history, scaled by a power of x: what is rescaled while the overlap falls is
 /// constant then over √x. Without damping d = p and F = u^p.
+#[expect(clippy::struct_excessive_bools, reason = "each leaves out a term of the equations")]
 #[derive(Clone, Copy, Debug)]
 pub struct Exponents {
     /// n.
@@ -35,6 +36,8 @@ pub struct Exponents {
     pub uneven: bool,
     /// Whether the history is rescaled while the overlap falls.
     pub rescaled: bool,
+    /// Whether there is a history.
+    pub remembers: bool,
     loading: OfStage,
     unloading: OfStage,
 }
@@ -70,11 +73,12 @@ impl Exponents {
         };
         let r = if law.tangential == Tangential::Mindlin { half } else { 0 };
         let last = n - 1;
-        let uneven = damped && contact.tangential_damping() != 1.0;
+        let uneven = damped && law.tested_damping(contact.tangential_damping()) != 1.0;
         let stage = |down: u8| {
             let (rho, beta) = match law.history {
                 HistoryOf::Displacement => (r + down, last - down),
                 HistoryOf::Force => (down, last + r - down),
+                HistoryOf::None => (d, last),
             };
             // The powers of the terms of the guard of slip, plus 1.
             let terms =
@@ -82,10 +86,11 @@ impl Exponents {
             let leading = terms.into_iter().filter(|(there, _)| *there).map(|(_, power)| power);
             OfStage { rho, beta, shared: d.min(rho), leading: leading.min().unwrap_or(0) }
         };
-        let unloading = stage(if law.rescaled { half } else { 0 });
-        let rescaled = law.rescaled;
+        let rescaled = law.rescaled && law.remembers();
+        let unloading = stage(if rescaled { half } else { 0 });
         let (loading, bend) = (stage(0), p - d);
-        Self { n, last, p, d, bend, r, damped, uneven, rescaled, loading, unloading }
+        let remembers = law.remembers();
+        Self { n, last, p, d, bend, r, damped, uneven, rescaled, remembers, loading, unloading }
     }
 
     /// The powers of a stage.
@@ -98,8 +103,7 @@ impl Exponents {
 /// The least n that makes a law polynomial in u.
 fn order(law: Law, damped: bool) -> u8 {
     let roots = law.normal == Normal::Hertz
-        || law.tangential == Tangential::Mindlin
-        || law.rescaled
+        || law.remembers() && (law.tangential == Tangential::Mindlin || law.rescaled)
         || (damped && law.damping == Damping::Viscoelastic);
     match (damped && law.damping == Damping::Tsuji, roots) {
         (true, _) => 4,

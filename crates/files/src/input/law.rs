@@ -45,15 +45,22 @@ pub fn by_name_or_file(text: Option<&str>) -> Result<Law, FileError> {
 pub fn named(name: &str) -> Result<Preset, FileError> {
     presets::find(name).ok_or_else(|| {
         let expected = "expected a name that `stickslip laws` lists";
-        FileError::Option(format!("no contact law is named {name:?}; {expected}"))
+        FileError::Option(format!("no contact law is named {name:?}; {expected}{}", near(name)))
     })
+}
+
+/// `; perhaps …` with the names that look like `name`.
+fn near(name: &str) -> String {
+    let names = presets::near(name);
+    if names.is_empty() { String::new() } else { format!("; perhaps {}", names.join(" or ")) }
 }
 
 /// The law in the file at `path`.
 fn read(path: &Path) -> Result<Law, FileError> {
     if !source::is_standard_input(path) && !path.exists() {
-        let reason = "is neither a file nor a name that `stickslip laws` lists";
-        return Err(FileError::input(path, reason.to_owned()));
+        let near = near(&path.to_string_lossy());
+        let reason = format!("is neither a file nor a name that `stickslip laws` lists{near}");
+        return Err(FileError::input(path, reason));
     }
     let text = source::read(path, MOST_BYTES)?;
     json::object(&text).map_err(|reason| FileError::input(source::shown(path), reason))

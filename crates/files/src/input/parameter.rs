@@ -23,6 +23,8 @@ pub enum Parameter {
     Alpha,
     /// Scaled damping a.
     Damping,
+    /// Coefficient of normal restitution, instead of the damping.
+    NormalRestitution,
     /// Tangential damping (γ_t/γ_n)/α.
     TangentialDamping,
 }
@@ -38,6 +40,7 @@ impl Parameter {
             Self::Mu => "mu",
             Self::Alpha => "alpha",
             Self::Damping => "damping",
+            Self::NormalRestitution => quantity::NORMAL_RESTITUTION.name,
             Self::TangentialDamping => "tangential_damping",
         }
     }
@@ -70,6 +73,9 @@ impl Parameter {
                 return if ok { Ok(value) } else { Err("a finite number above 0".into()) };
             }
             Self::Alpha => return quantity::INERTIA.check(value).map_err(|error| error.expected),
+            Self::NormalRestitution => {
+                return quantity::NORMAL_RESTITUTION.check(value).map_err(|error| error.expected);
+            }
         };
         contact.map(|_| value).map_err(|invalid| invalid.expected)
     }

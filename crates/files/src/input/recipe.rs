@@ -1,5 +1,6 @@
 //! The sources of the parameters of a contact: options, or columns of a file.
 
+use stickslip_model::restitution::{self, RestitutionError};
 use stickslip_model::{Contact, InvalidValue, Law, Reduction};
 
 use crate::input::parameter::{BadValue, Parameter};
@@ -19,6 +20,8 @@ pub struct Given {
     pub alpha: Option<f64>,
     /// `--damping`.
     pub damping: Option<f64>,
+    /// `--e-n`.
+    pub e_n: Option<f64>,
     /// `--tangential-damping`.
     pub tangential_damping: Option<f64>,
     /// `--law`.
@@ -34,6 +37,7 @@ impl Given {
             Parameter::Mu => self.mu,
             Parameter::Alpha => self.alpha,
             Parameter::Damping => self.damping,
+            Parameter::NormalRestitution => self.e_n,
             Parameter::TangentialDamping => self.tangential_damping,
         }
     }
@@ -47,7 +51,7 @@ pub struct Recipe {
     /// Used with the impact ratio only, and so is `alpha`.
     mu: Source,
     alpha: Source,
-    damping: Source,
+    damping: DampingSource,
     tangential_damping: Source,
     law: Law,
 }
@@ -59,6 +63,14 @@ pub enum ImpactParameter<T> {
     Psi(T),
     /// The impact ratio g_t/g_n, which μ and α reduce to ψ.
     Ratio(T),
+}
+
+/// What gives the damping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum DampingSource {
+    Scaled(Source),
+    /// The coefficient of normal restitution.
+    Restitution(Source),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,8 +108,8 @@ impl Recipe {
     /// of a parameter's column.
     ///
     /// # Errors
-    /// [`RecipeError`]: κ is missing, exactly one of ψ and the ratio is not given, or a value is
-    /// given twice or would not be used.
+    /// [`RecipeError`]: κ is missing where the law has a spring, exactly one of ψ and the ratio is
+    /// not given, or a value is given twice or would not be used.
     pub fn new(
         given: &Given,
         column: impl Fn(Parameter) -> Option<usize>,
@@ -108,13 +120,19 @@ impl Recipe {
             (None, Some(index)) => Ok(Some(Source::Column { parameter, index })),
             (None, None) => Ok(None),
         };
-        let kappa = source(Parameter::Kappa)?.ok_or(RecipeError::NoKappa)?;
+        // Without a spring κ has no effect.
+        let any = (!given.law.remembers()).then_some(Source::Value(1.0));
+        let kappa = source(Parameter::Kappa)?.or(any).ok_or(RecipeError::NoKappa)?;
         let forms = (source(Parameter::Psi)?, source(Parameter::Ratio)?);
         let impact = ImpactParameter::new(forms, (given.mu, given.alpha))?;
         let usual = Reduction::default();
         let mu = source(Parameter::Mu)?.unwrap_or(Source::Value(usual.mu));
         let alpha = source(Parameter::Alpha)?.unwrap_or(Source::Value(usual.alpha));
-        let damping = source(Parameter::Damping)?.unwrap_or(Source::Value(0.0));
+        let damping = match (source(Parameter::Damping)?, source(Parameter::NormalRestitution)?) {
+            (Some(_), Some(_)) => return Err(RecipeError::DampingTwice),
+            (damping, None) => DampingSource::Scaled(damping.unwrap_or(Source::Value(0.0))),
+            (None, Some(e_n)) => DampingSource::Restitution(e_n),
+        };
         let tangential_damping =
             source(Parameter::TangentialDamping)?.unwrap_or(Source::Value(0.0));
         let law = given.law;
@@ -146,7 +164,11 @@ impl Recipe {
             }
         };
         let tangential_damping = value(self.tangential_damping)?;
-        let contact = Contact::new(value(self.kappa)?, psi, value(self.damping)?);
+        let damping = match self.damping {
+            DampingSource::Scaled(damping) => value(damping)?,
+            DampingSource::Restitution(e_n) => restitution::damping(self.law, value(e_n)?)?,
+        };
+        let contact = Contact::new(value(self.kappa)?, psi, damping);
         contact
             .and_then(|contact| contact.with_law(self.law, tangential_damping))
             .map_err(ValueError::Value)
@@ -178,6 +200,8 @@ pub enum RecipeError {
         /// The name of the parameter.
         name: &'static str,
     },
+    /// The damping and the coefficient of normal restitution are both given.
+    DampingTwice,
     /// An option has no effect.
     Unused {
         /// The name of the parameter.
@@ -201,6 +225,9 @@ pub enum ValueError {
     /// Options give a value that is out of its range, or ratio, α and μ make such a ψ.
     #[error(transparent)]
     Value(#[from] InvalidValue),
+    /// No damping has the coefficient of normal restitution.
+    #[error(transparent)]
+    Restitution(#[from] RestitutionError),
 }
 
 /// `text` as it is shown in messages: in quotation marks, on one line, and not too long.

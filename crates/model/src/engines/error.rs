@@ -28,6 +28,17 @@ pub enum CollisionError {
         /// Scaled time reached.
         time: f64,
     },
+    /// The contact creeps. Where Coulomb's limit holds for the spring alone, a strong dashpot may
+    /// keep the spring at its limit: in stick it would exceed the limit at once, and in slip it
+    /// would stick at once.
+    #[error(
+        "the contact creeps from scaled time {time} on: its spring stays at its limit, between stick \
+         and slip, which is not computed; expected a weaker tangential damping, or 0"
+    )]
+    Creeping {
+        /// Scaled time at which that begins.
+        time: f64,
+    },
     /// A result is beyond the range of doubles.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),

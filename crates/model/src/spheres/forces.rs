@@ -3,7 +3,9 @@
 use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
 
 use super::quantity::{self, Quantity};
+use super::scaling::Units;
 use super::surface::Surface;
+use crate::restitution::{self, RestitutionError};
 
 /// The constants of a contact law in SI units. Which of them a law has is said at each.
 ///
@@ -14,6 +16,7 @@ use super::surface::Surface;
 /// F_n = ρ ξ^{3/2} + γ ξ^e ξ̇    (hertz)     viscoelastic or tsuji
 /// F_t = k_t ζ + r γ ξ^e g      (constant), |F_t| ≤ μ |F_n|
 /// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
+/// F_t = r γ ξ^e g              (without history)
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -37,8 +40,19 @@ pub struct Constants {
     pub damping_time_s: Option<f64>,
     /// Damping c without unit, γ = c √(m ρ) or c √(m k) with the effective mass m: instead of γ
     /// where the damping is Tsuji's and the force Hertz', or both are linear. It is the scaled
-    /// damping a.
+    /// damping a, **not** what particle codes call the damping ratio, which is
+    /// [`critical_damping_ratio`](Self::critical_damping_ratio).
     pub damping_ratio: Option<f64>,
+    /// Damping ratio ζ, the damping over the critical one: c/2 where force and damping are linear,
+    /// c/√5 where they are Hertz' and Tsuji's. With a contact that lasts until ξ = 0,
+    /// ζ = −ln ε_n/√(π² + ln² ε_n).
+    pub critical_damping_ratio: Option<f64>,
+    /// Coefficient of normal restitution ε_n, from which γ follows by
+    /// [`restitution::damping`](crate::restitution::damping).
+    pub e_n: Option<f64>,
+    /// Normal velocity in m/s at which ε_n is [`e_n`](Self::e_n), in laws where ε_n
+    /// [depends on it](crate::restitution::depends_on_velocity).
+    pub e_n_at_m_per_s: Option<f64>,
     /// The ratio r of tangential and normal damping, without unit; without it 0.
     pub tangential_damping_ratio: Option<f64>,
 }
@@ -62,6 +76,8 @@ enum Dashpot {
     Time(f64),
     /// γ over √(effective mass · elastic constant).
     Ratio(f64),
+    /// The scaled damping a at a normal velocity in m/s.
+    Scaled(f64, f64),
 }
 
 /// Constants that do not fit a law.
@@ -86,6 +102,9 @@ pub enum InvalidForces {
         /// The value that was given.
         value: f64,
     },
+    /// No damping of the law has the coefficient of restitution.
+    #[error(transparent)]
+    Restitution(#[from] RestitutionError),
     /// The damping is given twice.
     #[error("{first} and {second} are both given; expected one constant of damping")]
     Twice {
@@ -140,6 +159,11 @@ impl Forces {
             }
         };
         let tangential = match law.tangential {
+            _ if !law.remembers() => {
+                unused(&quantity::MINDLIN_STIFFNESS, c.mindlin_stiffness_kg_per_s2_m0_5)?;
+                unused(&quantity::TANGENTIAL_STIFFNESS, c.tangential_stiffness_kg_per_s2)?;
+                None
+            }
             Tangential::Constant => {
                 unused(&quantity::MINDLIN_STIFFNESS, c.mindlin_stiffness_kg_per_s2_m0_5)?;
                 Some(required(&quantity::TANGENTIAL_STIFFNESS, c.tangential_stiffness_kg_per_s2)?)
@@ -163,8 +187,14 @@ impl Forces {
             Dashpot::Coefficient(gamma) => gamma / elastic,
             Dashpot::Time(time) => time,
             Dashpot::Ratio(ratio) => ratio * (mass_kg / elastic).sqrt(),
+            Dashpot::Scaled(damping, normal_m_per_s) => {
+                let units = Units::new(self.law, elastic / mass_kg, normal_m_per_s);
+                damping / units.damping_per_s
+            }
         };
-        let tangential_stiffness_kg_per_s2 = self.tangential.unwrap_or(mindlin);
+        // Without a spring any stiffness will do.
+        let usual = if self.law.remembers() { mindlin } else { elastic };
+        let tangential_stiffness_kg_per_s2 = self.tangential.unwrap_or(usual);
         let friction = self.friction;
         (elastic, Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s })
     }
@@ -188,45 +218,70 @@ impl From<&Surface> for Forces {
 
 impl Dashpot {
     fn new(law: Law, constants: &Constants) -> Result<Self, InvalidForces> {
-        let gamma = (&quantity::DAMPING_COEFFICIENT, constants.damping_coefficient);
-        let time = (&quantity::DAMPING_TIME, constants.damping_time_s);
-        let ratio = (&quantity::DAMPING_RATIO, constants.damping_ratio);
-        let (has_time, has_ratio) = match (law.normal, law.damping) {
-            (Normal::Linear, Damping::Linear) => (true, true),
-            (Normal::Hertz, Damping::Viscoelastic) => (true, false),
-            (Normal::Hertz, Damping::Tsuji) => (false, true),
-            _ => (false, false),
+        let c = constants;
+        let critical = restitution::critical_damping(law);
+        let has_time = matches!(
+            (law.normal, law.damping),
+            (Normal::Linear, Damping::Linear) | (Normal::Hertz, Damping::Viscoelastic)
+        );
+        let [has_ratio, damped] = [critical.is_some(), law.damping != Damping::None];
+        // What may be given, and whether the law has it.
+        let all = [
+            (&quantity::DAMPING_COEFFICIENT, c.damping_coefficient, damped),
+            (&quantity::DAMPING_TIME, c.damping_time_s, has_time),
+            (&quantity::DAMPING_RATIO, c.damping_ratio, has_ratio),
+            (&quantity::CRITICAL_DAMPING_RATIO, c.critical_damping_ratio, has_ratio),
+            (&quantity::NORMAL_RESTITUTION, c.e_n, damped),
+        ];
+        let mut given = None;
+        for (quantity, value, has) in all {
+            let Some(value) = value else { continue };
+            let none = if quantity.name == quantity::NORMAL_RESTITUTION.name { 1.0 } else { 0.0 };
+            if !has && (damped || value != none) {
+                unused(quantity, Some(value))?;
+            }
+            let value = quantity.check(value)?;
+            if let (Some((first, _)), true) = (given, damped) {
+                return Err(twice(first, quantity));
+            }
+            given = Some((quantity, value));
+        }
+        let velocity = (&quantity::RESTITUTION_VELOCITY, c.e_n_at_m_per_s);
+        if c.e_n.is_none() || !restitution::depends_on_velocity(law) {
+            unused(velocity.0, velocity.1)?;
+        }
+        let Some((quantity, value)) = given.filter(|_| damped) else {
+            return if damped {
+                Err(missing(has_time, has_ratio))
+            } else {
+                Ok(Self::Coefficient(0.0))
+            };
         };
-        if law.damping == Damping::None {
-            for (quantity, value) in [gamma, time, ratio] {
-                unused(quantity, value.filter(|value| *value != 0.0))?;
+        Ok(match quantity.name {
+            name if name == quantity::DAMPING_COEFFICIENT.name => Self::Coefficient(value),
+            name if name == quantity::DAMPING_TIME.name => Self::Time(value),
+            name if name == quantity::DAMPING_RATIO.name => Self::Ratio(value),
+            name if name == quantity::CRITICAL_DAMPING_RATIO.name => {
+                Self::Ratio(value * critical.unwrap_or(f64::NAN))
             }
-            return Ok(Self::Coefficient(0.0));
-        }
-        if !has_time {
-            unused(time.0, time.1)?;
-        }
-        if !has_ratio {
-            unused(ratio.0, ratio.1)?;
-        }
-        match (checked(gamma.0, gamma.1)?, checked(time.0, time.1)?, checked(ratio.0, ratio.1)?) {
-            (Some(gamma), None, None) => Ok(Self::Coefficient(gamma)),
-            (None, Some(time), None) => Ok(Self::Time(time)),
-            (None, None, Some(ratio)) => Ok(Self::Ratio(ratio)),
-            (None, None, None) => {
-                let expected = match (has_time, has_ratio) {
-                    (true, true) => "it, damping_time_s or damping_ratio",
-                    (true, false) => "it or damping_time_s",
-                    (false, true) => "it or damping_ratio",
-                    (false, false) => gamma.0.expected,
-                };
-                Err(InvalidForces::Missing { name: gamma.0.name, expected })
+            _ if has_ratio => Self::Ratio(restitution::damping(law, value)?),
+            _ => {
+                let at = required(velocity.0, velocity.1)?;
+                Self::Scaled(restitution::damping(law, value)?, at)
             }
-            (Some(_), Some(_), _) => Err(twice(gamma.0, time.0)),
-            (Some(_), ..) => Err(twice(gamma.0, ratio.0)),
-            _ => Err(twice(time.0, ratio.0)),
-        }
+        })
     }
+}
+
+/// A damped law without damping.
+fn missing(has_time: bool, has_ratio: bool) -> InvalidForces {
+    let expected = match (has_time, has_ratio) {
+        (true, true) => "it, damping_time_s, damping_ratio, critical_damping_ratio or e_n",
+        (true, false) => "it, damping_time_s or e_n",
+        (false, true) => "it, damping_ratio, critical_damping_ratio or e_n",
+        (false, false) => "it or e_n",
+    };
+    InvalidForces::Missing { name: quantity::DAMPING_COEFFICIENT.name, expected }
 }
 
 fn twice(first: &Quantity, second: &Quantity) -> InvalidForces {

@@ -66,6 +66,15 @@ pub const DAMPING_COEFFICIENT: Quantity =
 /// Damping of the normal force without unit.
 pub const DAMPING_RATIO: Quantity =
     not_negative("damping_ratio", "a finite number, 0 or above, without unit");
+/// Damping ratio ζ of the normal force, as particle codes define it.
+pub const CRITICAL_DAMPING_RATIO: Quantity =
+    not_negative("critical_damping_ratio", "a finite number, 0 or above, without unit");
+/// Coefficient of normal restitution.
+pub const NORMAL_RESTITUTION: Quantity =
+    Quantity { name: "e_n", expected: "a number above 0, at most 1", range: Range::Share };
+/// Normal velocity to which a coefficient of normal restitution belongs.
+pub const RESTITUTION_VELOCITY: Quantity =
+    positive("e_n_at_m_per_s", "a finite number above 0, in m/s");
 /// Ratio of tangential and normal damping.
 pub const TANGENTIAL_DAMPING_RATIO: Quantity =
     not_negative("tangential_damping_ratio", "a finite number, 0 or above, without unit");

@@ -163,11 +163,7 @@ impl BodyPair {
         }
         let Self { law, alpha, .. } = *self;
         let beta = self.elastic_constant / self.effective_mass_kg;
-        let time = match law.normal {
-            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
-            Normal::Linear => 1.0 / beta.sqrt(),
-        };
-        let length = normal_m_per_s * time;
+        let Units { time, length, damping_per_s } = Units::new(law, beta, normal_m_per_s);
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = self.surface;
         let stiffness = match law.tangential {
             Tangential::Constant => tangential_stiffness_kg_per_s2,
@@ -175,13 +171,7 @@ impl BodyPair {
         };
         let kappa = stiffness * time * time / (alpha * self.effective_mass_kg);
         let psi = tangential_m_per_s / normal_m_per_s * alpha / friction;
-        let damping = match (law.normal, law.damping) {
-            (_, Damping::None) => 0.0,
-            (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
-            (_, Damping::Linear) => beta * damping_time_s * time,
-            (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
-            (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
-        };
+        let damping = damping_per_s * damping_time_s;
         let contact = Contact::new(kappa, psi, damping)?;
         Ok(Impact {
             contact: contact.with_law(law, self.tangential_damping())?,
@@ -189,6 +179,33 @@ impl BodyPair {
             normal_m_per_s,
             time_unit_s: time,
         })
+    }
+}
+
+/// The units of an impact: of time in s, of length in m, and the scaled damping a of a damping time
+/// of 1 s.
+pub(super) struct Units {
+    time: f64,
+    length: f64,
+    pub damping_per_s: f64,
+}
+
+impl Units {
+    /// The units under a law with β, the elastic constant over the effective mass.
+    pub fn new(law: Law, beta: f64, normal_m_per_s: f64) -> Self {
+        let time = match law.normal {
+            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
+            Normal::Linear => 1.0 / beta.sqrt(),
+        };
+        let length = normal_m_per_s * time;
+        let damping_per_s = match (law.normal, law.damping) {
+            (_, Damping::None) => 0.0,
+            (Normal::Hertz, Damping::Viscoelastic) => 1.0 / time,
+            (_, Damping::Linear) => beta * time,
+            (_, Damping::Viscoelastic) => beta * time * length.sqrt(),
+            (_, Damping::Tsuji) => beta * time * length.sqrt().sqrt(),
+        };
+        Self { time, length, damping_per_s }
     }
 }
 

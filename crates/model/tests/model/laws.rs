@@ -6,14 +6,15 @@ use stickslip_model::general::GeneralContact;
 use stickslip_model::history::Snapshot;
 use stickslip_model::regularized::Regularized;
 use stickslip_model::{
-    Collider, Collision, CollisionError, Contact, Damping, End, Engine, HistoryOf, Law, Normal,
-    Regime, SpringEnergy, Tangential, exact, presets,
+    Collider, Collision, CollisionError, Contact, CoulombTest, Damping, End, Engine, HistoryOf,
+    Law, Normal, Regime, SpringEnergy, Tangential, exact, presets,
 };
 
 use stickslip_solver::Dop853;
 
 use crate::common::file;
 use crate::lammps::contact;
+use crate::plain;
 
 fn collide(contact: Contact) -> Collision {
     let (collision, _) =
@@ -67,6 +68,7 @@ fn laws() -> Vec<Law> {
                                 rescaled,
                                 limit_damping,
                                 end,
+                                coulomb_test: CoulombTest::Total,
                             });
                         }
                     }
@@ -75,6 +77,93 @@ fn laws() -> Vec<Law> {
         }
     }
     laws
+}
+
+/// The laws without history that differ in effect, and those whose Coulomb test leaves out the
+/// dashpot.
+fn other_tests() -> [Vec<Law>; 2] {
+    let damped = || laws().into_iter().filter(|law| law.damping != Damping::None);
+    let plain = damped().filter(|law| {
+        law.tangential == Tangential::Constant && law.history == HistoryOf::Force && !law.rescaled
+    });
+    [
+        plain.map(|law| Law { history: HistoryOf::None, ..law }).collect(),
+        damped().map(|law| Law { coulomb_test: CoulombTest::Spring, ..law }).collect(),
+    ]
+}
+
+/// The dashpot of Becker, Schwager and Pöschel (2008), integrated elsewhere.
+#[test]
+fn a_contact_without_history_is_that_of_another_program() {
+    let law = presets::find("gran/hooke").unwrap().law;
+    for (end, expected) in [
+        (End::Overlap, [(0.5, 0.197_878), (2.0, 0.278_314)]),
+        (End::Force, [(0.5, 0.226_688), (2.0, 0.292_826)]),
+    ] {
+        for (psi, eps_t) in expected {
+            let contact = Contact::new(1.0, psi, 0.3)
+                .and_then(|contact| contact.with_law(Law { end, ..law }, 1.75))
+                .unwrap();
+            let found = collide(contact).eps_t();
+            assert!((found - eps_t).abs() < 6e-7, "{found} {eps_t}");
+        }
+    }
+}
+
+/// Laws without history, by a newer LAMMPS.
+#[test]
+fn contacts_without_history_are_those_of_lammps() {
+    let reference = file("lammps_2025");
+    let cases = reference["cases"].as_array().unwrap();
+    let mut names = BTreeSet::new();
+    for case in cases {
+        let number = |name: &str| case[name].as_f64().unwrap();
+        let name = case["law"].as_str().unwrap();
+        let preset = presets::find(name).unwrap();
+        let contact = Contact::new(1.0, number("psi"), number("damping"))
+            .and_then(|contact| contact.with_law(preset.law, number("tangential_damping")))
+            .unwrap();
+        let collision = collide(contact);
+        let errors = [
+            (collision.eps_t() - number("eps_t")).abs() - number("eps_t_error"),
+            (collision.eps_n - number("eps_n")).abs() - number("eps_n_error"),
+        ];
+        assert!(errors.iter().all(|error| *error < 2e-5), "{errors:?} {case}");
+        names.insert(preset.name);
+    }
+    assert_eq!((cases.len(), names.len()), (100, 5));
+}
+
+/// In plain time, with other equations, steps and searches for switches.
+#[test]
+fn other_tests_agree_with_plain_time() {
+    let mut rng = fastrand::Rng::with_seed(55);
+    let (mut others, mut refused) = (0, 0);
+    for law in other_tests().into_iter().flatten() {
+        for _ in 0..4 {
+            let mut contact = random(law, &mut rng);
+            if law.history == HistoryOf::None || contact.tangential_damping() == 0.0 {
+                let dashpot = 0.05 * 100.0_f64.powf(rng.f64());
+                contact = contact.with_law(law, dashpot).unwrap();
+            }
+            let found = match Engine::Auto.collide(contact) {
+                Ok((collision, _)) => collision,
+                Err(CollisionError::Creeping { .. }) => {
+                    assert!(law.coulomb_test == CoulombTest::Spring, "{contact:?}");
+                    refused += 1;
+                    continue;
+                }
+                Err(error) => panic!("{error} {contact:?}"),
+            };
+            let plain = plain::collide(contact).unwrap_or_else(|| panic!("{contact:?}"));
+            let error = (found.eps_t() - plain.eps_t).abs() * contact.psi();
+            assert!(error < 1e-6, "{error:e} {contact:?}");
+            let own = plain::lasting(&found, plain.end);
+            others += usize::from(own != plain::longer(plain.phases.into_iter(), plain.end));
+        }
+    }
+    assert!(refused <= 6, "{refused}");
+    assert!(others <= 3, "{others}");
 }
 
 /// A random contact with `law`.
@@ -108,10 +197,15 @@ fn close(one: &Collision, other: &Collision, tolerance: f64) {
 #[test]
 fn every_law_runs_and_keeps_its_accounts() {
     let mut rng = fastrand::Rng::with_seed(19);
-    for law in laws() {
+    for law in laws().into_iter().chain(other_tests().into_iter().flatten()) {
         for _ in 0..10 {
             let contact = random(law, &mut rng);
-            let collision = collide(contact);
+            let collision = match Engine::Auto.collide(contact) {
+                Err(CollisionError::Creeping { .. }) if law.coulomb_test == CoulombTest::Spring => {
+                    continue;
+                }
+                found => found.unwrap_or_else(|error| panic!("{contact:?}: {error}")).0,
+            };
             let energy = &collision.energy;
             assert!(energy.normal_unbalanced().abs() < 1e-9, "{contact:?}");
             assert!(collision.eps_n >= 0.0 && collision.eps_n < 1.0 + 1e-9, "{contact:?}");
@@ -144,7 +238,7 @@ fn terms_without_effect_have_none() {
         if law.tangential == Tangential::Constant {
             let other = match law.history {
                 HistoryOf::Displacement => HistoryOf::Force,
-                HistoryOf::Force => HistoryOf::Displacement,
+                _ => HistoryOf::Displacement,
             };
             close(&collision, &collide(with(contact, |law| law.history = other)), 1e-11);
         }

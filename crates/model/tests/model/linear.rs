@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip_model::{
-    Collider, Collision, Contact, Damping, End, Engine, HistoryOf, Law, Normal, Regime, Side,
-    Tangential, exact::ExactError, linear, presets,
+    Collider, Collision, Contact, CoulombTest, Damping, End, Engine, HistoryOf, Law, Normal,
+    Regime, Side, Tangential, exact::ExactError, linear, presets,
 };
 
 use crate::common::{file, number};
@@ -18,6 +18,7 @@ const ATTRACTING: Law = Law {
     rescaled: false,
     limit_damping: false,
     end: End::Overlap,
+    coulomb_test: CoulombTest::Total,
 };
 const LIMITED: Law = Law { limit_damping: true, ..ATTRACTING };
 const TO_ZERO_FORCE: Law = Law { end: End::Force, ..ATTRACTING };

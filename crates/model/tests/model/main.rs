@@ -10,6 +10,10 @@ mod common;
 mod itinerary;
 #[path = "../../../../tests/common/lammps.rs"]
 mod lammps;
+#[path = "../../../../tests/common/plain.rs"]
+mod plain;
+
+use stickslip_model as model;
 
 mod estimates;
 mod exact;

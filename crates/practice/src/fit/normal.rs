@@ -1,10 +1,10 @@
 //! The damping, which follows from the normal motion alone.
 
-use stickslip_model::{CollisionFailure, Contact, Engine};
+use stickslip_model::restitution;
 
 use super::FitError;
 use super::axis::Axis;
-use super::bodies::{Bodies, Units};
+use super::bodies::Units;
 use super::free::Free;
 use super::intervals::{Interval, interval, threshold};
 use super::problem::Problem;
@@ -30,7 +30,7 @@ pub struct DampingFit {
 /// The damping of the settings at normal incidence: fitted, given by ε_n, or taken from the bodies.
 pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<DampingFit>), FitError> {
     if let Some(eps_n) = settings.eps_n {
-        return Ok((with_eps_n(&settings.bodies, eps_n)?, None));
+        return Ok((restitution::damping(settings.bodies.pair.law, eps_n)?, None));
     }
     if !settings.free.contains(&Free::Damping) {
         return Ok((settings.bodies.values(units).damping, None));
@@ -54,45 +54,4 @@ pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<Dampin
     let interval = interval(&lines, &found, bottoms.into_iter(), threshold)?;
     let fit = DampingFit { damping, data: data.len(), estimated_errors, misfit, interval };
     Ok((damping, Some(fit)))
-}
-
-/// ε_n at normal incidence with some damping.
-pub fn eps_n(bodies: &Bodies, damping: f64) -> Result<f64, FitError> {
-    // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
-    // some laws begin alike, which cannot be integrated.
-    let contact = Contact::new(1.1, 0.3, damping)?.with_law(bodies.pair.law, 0.0)?;
-    let found = Engine::Auto.collide(contact);
-    let (collision, _) = found.map_err(|source| CollisionFailure::new(&contact, source))?;
-    Ok(collision.eps_n)
-}
-
-/// The damping at which ε_n has a value at normal incidence, by bisection to rounding: ε_n falls
-/// with the damping.
-fn with_eps_n(bodies: &Bodies, wanted: f64) -> Result<f64, FitError> {
-    /// The largest damping that is tried.
-    const MOST: f64 = 128.0;
-    if wanted == 1.0 {
-        return Ok(0.0);
-    }
-    let most = f64::min(MOST, (1.0 - 1e-9) * bodies.pair.law.endless_from());
-    // A contact with far too much damping takes long to compute.
-    let mut high = f64::min(0.5, most);
-    loop {
-        let least = eps_n(bodies, high)?;
-        if least <= wanted {
-            break;
-        }
-        if high >= most {
-            return Err(FitError::Unreachable { eps_n: wanted, least });
-        }
-        high = f64::min(2.0 * high, most);
-    }
-    let mut low = 0.0;
-    loop {
-        let middle = f64::midpoint(low, high);
-        if !(low < middle && middle < high) {
-            return Ok(middle);
-        }
-        if eps_n(bodies, middle)? > wanted { low = middle } else { high = middle }
-    }
 }

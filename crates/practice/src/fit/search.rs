@@ -113,7 +113,7 @@ impl<P, F: Fn(&P) -> Result<f64, FitError>> CostFunction for &Cost<P, F> {
 mod tests {
     use super::*;
 
-    const BROKEN: FitError = FitError::Unreachable { eps_n: 0.5, least: 0.7 };
+    const BROKEN: FitError = FitError::NoPlaces;
 
     fn broken<P>(_: P) -> Result<f64, FitError> {
         Err(BROKEN)

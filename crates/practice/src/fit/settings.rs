@@ -97,6 +97,9 @@ impl Settings {
             if self.free[..index].contains(free) {
                 return Err(FitError::Twice { name });
             }
+            if *free == Free::Kappa && !self.bodies.pair.law.remembers() {
+                return Err(FitError::NoSpring { name });
+            }
             let Range { low, high } = self.ranges.of(*free);
             let (least, open, most) = match free {
                 Free::Kappa => (0.0, true, Self::LARGEST_KAPPA),

@@ -1,6 +1,7 @@
 //! The fit itself: the model on a grid, and what is made of it with data.
 
 use rayon::prelude::*;
+use stickslip_model::restitution;
 use stickslip_plane::progress::{Progress, Report};
 
 use super::axis::Axis;
@@ -111,7 +112,7 @@ impl Survey {
             level: settings.level,
             threshold,
             damping: self.damping.clone(),
-            eps_n: normal::eps_n(&settings.bodies, self.fixed.damping)?,
+            eps_n: restitution::eps_n(settings.bodies.pair.law, self.fixed.damping)?,
             residuals: self.residuals(&minima[0].values)?,
             minima,
             intervals,

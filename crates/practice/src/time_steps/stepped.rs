@@ -1,6 +1,8 @@
 //! One collision in the steps of a particle code.
 
-use stickslip_model::{Contact, Damping, End, HistoryOf, Law, Normal, Tangential, exact};
+use stickslip_model::{
+    Contact, CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential, exact,
+};
 
 use super::scheme::Scheme;
 
@@ -182,6 +184,11 @@ impl ForceRule {
         };
         self.first = false;
         let viscous = dashpot * state.w;
+        let (beside, viscous) = match self.law.coulomb_test {
+            CoulombTest::Total => (0.0, viscous),
+            CoulombTest::Spring if self.law.remembers() => (viscous, 0.0),
+            CoulombTest::Spring => (0.0, viscous),
+        };
         let trial = match self.law.history {
             HistoryOf::Displacement => {
                 state.history += state.w * elapsed;
@@ -191,9 +198,10 @@ impl ForceRule {
                 state.history += k * state.w * elapsed;
                 state.history + viscous
             }
+            HistoryOf::None => return viscous.abs().min(limit).copysign(viscous),
         };
         if trial.abs() <= limit {
-            return trial;
+            return trial + beside;
         }
         if state.history == 0.0 {
             return 0.0;
@@ -201,7 +209,7 @@ impl ForceRule {
         let force = limit.copysign(trial);
         state.history = match self.law.history {
             HistoryOf::Displacement => (force - viscous) / k,
-            HistoryOf::Force => force - viscous,
+            HistoryOf::Force | HistoryOf::None => force - viscous,
         };
         force
     }

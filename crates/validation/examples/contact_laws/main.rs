@@ -14,10 +14,14 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use stickslip::model::{
-    Collision, Contact, Damping, End, Engine, HistoryOf, Law, Normal, Tangential, Tolerances,
+    self, Collision, Contact, CoulombTest, Damping, End, Engine, HistoryOf, Law, Normal,
+    Tangential, Tolerances,
 };
 
+#[path = "../../../../tests/common/plain.rs"]
 mod plain;
+
+use plain::{lasting, longer};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let contacts: u64 = std::env::args().nth(1).map_or(Ok(1000), |argument| argument.parse())?;
@@ -63,27 +67,42 @@ fn laws() -> Vec<Law> {
                 (Tangential::Mindlin, HistoryOf::Force),
             ] {
                 for rescaled in [false, true] {
-                    laws.push(Law {
-                        normal,
-                        damping,
-                        tangential,
-                        history,
-                        rescaled,
-                        limit_damping,
-                        end,
-                    });
+                    for coulomb_test in [CoulombTest::Total, CoulombTest::Spring] {
+                        laws.push(Law {
+                            normal,
+                            damping,
+                            tangential,
+                            history,
+                            rescaled,
+                            limit_damping,
+                            end,
+                            coulomb_test,
+                        });
+                    }
                 }
             }
+            laws.push(Law {
+                normal,
+                damping,
+                tangential: Tangential::Constant,
+                history: HistoryOf::None,
+                rescaled: false,
+                limit_damping,
+                end,
+                coulomb_test: CoulombTest::Total,
+            });
         }
     }
     laws
 }
 
 fn name(law: Law) -> String {
-    let Law { normal, damping, tangential, history, rescaled, limit_damping, end } = law;
+    let Law { normal, damping, tangential, history, rescaled, limit_damping, end, coulomb_test } =
+        law;
     let rescaled = if rescaled { " rescaled" } else { "" };
     let limit = if limit_damping { " limited" } else { "" };
-    format!("{normal:?} {damping:?} {tangential:?} {history:?}{rescaled} {end:?}{limit}")
+    let test = if coulomb_test == CoulombTest::Spring { " spring tested" } else { "" };
+    format!("{normal:?} {damping:?} {tangential:?} {history:?}{rescaled} {end:?}{limit}{test}")
 }
 
 /// What the opinions on some contacts differ in.
@@ -175,28 +194,6 @@ fn random(law: Law, seed: u64) -> Contact {
     Contact::new(kappa, psi, damping)
         .and_then(|contact| contact.with_law(law, tangential))
         .expect("parameters in range")
-}
-
-/// The itinerary of a collision up to `end` without phases that plain time does not resolve.
-fn lasting(collision: &Collision, end: f64) -> String {
-    let itinerary = collision.itinerary();
-    let times = std::iter::once(0.0).chain(collision.switches.iter().map(|switch| switch.time));
-    longer(itinerary.chars().zip(times), end.min(collision.contact_time))
-}
-
-/// The phases that last, among phases with the times at which they begin.
-fn longer(phases: impl Iterator<Item = (char, f64)>, end: f64) -> String {
-    /// The shortest phase that counts.
-    const SHORTEST: f64 = 1e-5;
-    let phases: Vec<_> = phases.collect();
-    let ends = phases.iter().skip(1).map(|(_, time)| *time).chain([end]);
-    let mut itinerary = String::new();
-    for ((phase, begin), end) in phases.iter().zip(ends) {
-        if end - begin > SHORTEST && !itinerary.ends_with(*phase) {
-            itinerary.push(*phase);
-        }
-    }
-    itinerary
 }
 
 /// Relative changes of a parameter by which a contact may have other switches.

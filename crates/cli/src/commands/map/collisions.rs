@@ -197,7 +197,7 @@ impl MapAxes {
         let MapArguments { kappa, psi, ratio, collisions, ref method, .. } = *arguments;
         let (columns, impact) = window(kappa, (psi, ratio), collisions)?;
         let engine = method.engine(law)?;
-        let damping = collisions.damping.unwrap_or(0.0);
+        let damping = collisions.damping(law.0)?;
         let (rows, coordinates) = match impact {
             ImpactRange::Psi(psi) => (psi, Coordinates::Psi { damping }),
             ImpactRange::Ratio(RatioRange { range, reduction }) => {

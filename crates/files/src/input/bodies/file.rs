@@ -122,6 +122,9 @@ pub struct SurfaceFields {
     damping_coefficient: Option<Value>,
     damping_time_s: Option<Value>,
     damping_ratio: Option<Value>,
+    critical_damping_ratio: Option<Value>,
+    e_n: Option<Value>,
+    e_n_at_m_per_s: Option<Value>,
     tangential_damping_ratio: Option<Value>,
 }
 
@@ -310,6 +313,12 @@ impl SurfaceFields {
             damping_coefficient: given(&quantity::DAMPING_COEFFICIENT, &self.damping_coefficient)?,
             damping_time_s: given(&quantity::DAMPING_TIME, &self.damping_time_s)?,
             damping_ratio: given(&quantity::DAMPING_RATIO, &self.damping_ratio)?,
+            critical_damping_ratio: given(
+                &quantity::CRITICAL_DAMPING_RATIO,
+                &self.critical_damping_ratio,
+            )?,
+            e_n: given(&quantity::NORMAL_RESTITUTION, &self.e_n)?,
+            e_n_at_m_per_s: given(&quantity::RESTITUTION_VELOCITY, &self.e_n_at_m_per_s)?,
             tangential_damping_ratio: given(
                 &quantity::TANGENTIAL_DAMPING_RATIO,
                 &self.tangential_damping_ratio,

@@ -36,6 +36,7 @@ impl Columns {
         Parameter::Mu,
         Parameter::Alpha,
         Parameter::Damping,
+        Parameter::NormalRestitution,
         Parameter::TangentialDamping,
     ];
 
@@ -149,6 +150,10 @@ fn explain(error: RecipeError) -> String {
         }
         RecipeError::GivenTwice { name } => {
             format!("the column {name} and --{name} are both given; expected one of them")
+        }
+        RecipeError::DampingTwice => {
+            "damping and e_n are both given; expected one of them, as a column or an option"
+                .to_owned()
         }
         RecipeError::Unused { name } => {
             format!("--{name} has no effect with psi; expected with ratio only")

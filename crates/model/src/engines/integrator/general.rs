@@ -2,9 +2,11 @@
 
 use stickslip_contact::general::{CREST, DAMPING, GeneralContact, Mode, REVERSAL, STATE, T};
 use stickslip_contact::phase::END;
-use stickslip_contact::{Collision, Contact, End, EnergyLedger, Law, Normal, Regime, Switch};
+use stickslip_contact::{
+    Collision, Contact, CoulombTest, End, EnergyLedger, Law, Normal, Regime, Switch,
+};
 use stickslip_solver::{
-    EmbeddedPair, Observer, Options, Outcome, ReadableSystem, Start, State, Statistics,
+    EmbeddedPair, Observer, Options, Outcome, ReadableSystem, RunError, Start, State, Statistics,
     SwitchEvent, run_with,
 };
 
@@ -34,7 +36,14 @@ pub fn collide<O: Observer<Mode, STATE>>(
         forward: true,
     };
     let mut observed = Observed { account, course };
-    let run = run_with(pair, &system, start, f64::INFINITY, options, &mut observed)?;
+    let run = run_with(pair, &system, start, f64::INFINITY, options, &mut observed);
+    let tests_spring = contact.law().coulomb_test == CoulombTest::Spring;
+    let run = match run {
+        Err(RunError::Cycle { .. }) if tests_spring => {
+            return Err(CollisionError::Creeping { time: observed.account.elapsed });
+        }
+        run => run?,
+    };
     let account = observed.account;
     if run.outcome != (Outcome::EndedByGuard { guard: END }) {
         let time = account.elapsed + run.state[T];
