@@ -188,7 +188,7 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         extrema(&self.runs, &self.curves)
     }
 
-    /// The free runs of a lattice whose first and last places lie just inside the edges, in columns.
+    /// The free runs of a lattice, in columns. Its outermost places lie just inside the edges.
     fn lattice<E: Executor<F>>(&self, executor: &E) -> Traced<Option<Vec<Sampled<F>>>, F> {
         let cells = self.runs.options.cells;
         let inset = Point::repeat(self.runs.lengths.half);
@@ -293,8 +293,8 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         Ok(())
     }
 
-    /// Searches beside the last part of a line, where it makes a wedge with another one, unless that
-    /// was done.
+    /// Searches beside the last part of a line, where it makes a wedge with another one, unless
+    /// that was done.
     fn look_beside(&mut self, index: usize, end: usize) -> Traced<(), F> {
         let line = &self.all[index];
         let tip = line.tip(end);
