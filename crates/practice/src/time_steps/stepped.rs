@@ -185,9 +185,8 @@ impl ForceRule {
         self.first = false;
         let viscous = dashpot * state.w;
         let (beside, viscous) = match self.law.coulomb_test {
-            CoulombTest::Total => (0.0, viscous),
             CoulombTest::Spring if self.law.remembers() => (viscous, 0.0),
-            CoulombTest::Spring => (0.0, viscous),
+            _ => (0.0, viscous),
         };
         let trial = match self.law.history {
             HistoryOf::Displacement => {
