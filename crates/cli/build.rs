@@ -8,17 +8,22 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 15] = [
+const SOURCES: [&str; 20] = [
     "src",
     "build.rs",
     "templates",
     "../contact/src",
     "../exact/src",
+    "../expression/src",
     "../figure/assets",
     "../figure/src",
     "../files/src",
     "../model/src",
+    "../number/src",
+    "../orbits/src",
+    "../page/explorer.html",
     "../plane/src",
+    "../practice/src",
     "../reproduction/src",
     "../studies/src",
     "../solver/src",

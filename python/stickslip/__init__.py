@@ -18,10 +18,11 @@ if TYPE_CHECKING:
     from stickslip._explorer import Explorer, explore
     from stickslip._laws import Keyword, NamedLaw, Restitution, laws, restitution
     from stickslip._native import ComputationError
+    from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialCurve, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
-    from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
-    from stickslip.collisions import (
+    from stickslip._atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
+    from stickslip._collisions import (
         Collision,
         Collisions,
         Estimate,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
         eps_t_and_switch_count,
         psi_of_ratio,
     )
-    from stickslip.families import (
+    from stickslip._families import (
         FamilyAtlas,
         FamilyCurve,
         FamilyLocated,
@@ -49,20 +50,20 @@ if TYPE_CHECKING:
         VerifyOptions,
         trace_family,
     )
-    from stickslip.family_stacks import (
+    from stickslip._family_stacks import (
         FamilyChange,
         FamilyLayer,
         FamilyStack,
         StackInterrupted,
         stack_family,
     )
-    from stickslip.fits import Fit, fit
+    from stickslip._fits import Fit, fit
     from stickslip._recorded import recorded
     from stickslip._sympy import from_sympy
-    from stickslip.formulas import FormulaSystem, read, system
-    from stickslip.gaining import GainingLine, GainingLines, gaining_lines
-    from stickslip.hybrid import SampledGuardsWarning, solve
-    from stickslip.impacts import (
+    from stickslip._formulas import FormulaSystem, read, system
+    from stickslip._gaining import GainingLine, GainingLines, gaining_lines
+    from stickslip._hybrid import SampledGuardsWarning, solve
+    from stickslip._impacts import (
         Bodies,
         Impacts,
         Material,
@@ -73,10 +74,10 @@ if TYPE_CHECKING:
         WallMotion,
         impact,
     )
-    from stickslip.many import solve_many
-    from stickslip.maps import map
-    from stickslip.stacks import Change, Layer, Stack, stack
-    from stickslip.studies import (
+    from stickslip._many import solve_many
+    from stickslip._maps import map
+    from stickslip._stacks import Change, Layer, Stack, stack
+    from stickslip._studies import (
         Study,
         Table,
         asymptote,
@@ -85,21 +86,22 @@ if TYPE_CHECKING:
         reproduce,
         reproduction_parts,
     )
-    from stickslip.sweeps import sweep, write_sweep
-    from stickslip.tables import (
+    from stickslip._sweeps import sweep, write_sweep
+    from stickslip._tables import (
         RestitutionTable,
         VelocityTable,
         load_table,
         table,
         table_of_velocities,
     )
-    from stickslip.timesteps import StepErrors, TimeSteps, timestep
+    from stickslip._timesteps import StepErrors, TimeSteps, timestep
 
 __all__ = [
     "Atlas",
     "AtlasWarning",
     "Bodies",
     "Boundary",
+    "Branch",
     "Change",
     "Collision",
     "Collisions",
@@ -135,6 +137,8 @@ __all__ = [
     "MonitorZero",
     "Motion",
     "NamedLaw",
+    "Orbit",
+    "OrbitSegment",
     "Region",
     "Restitution",
     "RestitutionTable",
@@ -142,6 +146,8 @@ __all__ = [
     "Sensitivities",
     "Sensitivity",
     "Solution",
+    "SpecialCurve",
+    "SpecialOrbit",
     "Sphere",
     "Stack",
     "StackInterrupted",
@@ -200,34 +206,35 @@ _MODULES = {
     "_explorer": "Explorer explore",
     "_laws": "Keyword NamedLaw Restitution laws restitution",
     "_native": "ComputationError",
+    "_orbits": "Branch Orbit OrbitSegment SpecialCurve SpecialOrbit",
     "_solutions": "DenseOutput Solution",
     "_systems": "Guard HybridSystem Mode",
-    "atlases": "Atlas AtlasWarning Boundary Located Region Vertex trace",
-    "collisions": (
+    "_atlases": "Atlas AtlasWarning Boundary Located Region Vertex trace",
+    "_collisions": (
         "Collision Collisions Estimate Sensitivity collide collide_many eps_t "
         "eps_t_and_switch_count psi_of_ratio"
     ),
-    "families": (
+    "_families": (
         "FamilyAtlas FamilyCurve FamilyLocated FamilyMargin FamilyRegion FamilyVertex Followed "
         "HybridFamily Itinerary MonitorZero TraceInterrupted TraceOptions Unresolved "
         "VerifyOptions trace_family"
     ),
-    "family_stacks": "FamilyChange FamilyLayer FamilyStack StackInterrupted stack_family",
-    "fits": "Fit fit",
+    "_family_stacks": "FamilyChange FamilyLayer FamilyStack StackInterrupted stack_family",
+    "_fits": "Fit fit",
     "_recorded": "recorded",
     "_sympy": "from_sympy",
-    "formulas": "FormulaSystem read system",
-    "gaining": "GainingLine GainingLines gaining_lines",
-    "hybrid": "SampledGuardsWarning solve",
-    "impacts": "Bodies Impacts Material Motion Sphere Surface Wall WallMotion impact",
-    "many": "solve_many",
-    "maps": "map",
-    "stacks": "Change Layer Stack stack",
+    "_formulas": "FormulaSystem read system",
+    "_gaining": "GainingLine GainingLines gaining_lines",
+    "_hybrid": "SampledGuardsWarning solve",
+    "_impacts": "Bodies Impacts Material Motion Sphere Surface Wall WallMotion impact",
+    "_many": "solve_many",
+    "_maps": "map",
+    "_stacks": "Change Layer Stack stack",
     "style": "",
-    "studies": "Study Table asymptote contact_laws converge reproduce reproduction_parts",
-    "sweeps": "sweep write_sweep",
-    "tables": "RestitutionTable VelocityTable load_table table table_of_velocities",
-    "timesteps": "StepErrors TimeSteps timestep",
+    "_studies": "Study Table asymptote contact_laws converge reproduce reproduction_parts",
+    "_sweeps": "sweep write_sweep",
+    "_tables": "RestitutionTable VelocityTable load_table table table_of_velocities",
+    "_timesteps": "StepErrors TimeSteps timestep",
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names.split()}
 

@@ -1,24 +1,19 @@
-"""`python -m stickslip`: the program of this name, where it is installed."""
+"""`stickslip` and `python -m stickslip`: the program, without a compiler of Rust."""
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
+import signal
 import sys
 
+from stickslip import _native
 
-def program() -> str:
-    """The path of the program: beside this interpreter, or one of the PATH."""
-    beside = os.path.dirname(sys.executable)
-    found = shutil.which("stickslip", path=beside) or shutil.which("stickslip")
-    if found is None:
-        sys.exit(
-            "the program stickslip is not installed; the Python package does not contain it: "
-            "cargo install --path crates/cli, in the repository"
-        )
-    return found
+
+def main() -> int:
+    """Carries out the command line of this process: its exit code."""
+    # While the program computes, Python's own handler would wait for it to return.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _native.program(["stickslip", *sys.argv[1:]])
 
 
 if __name__ == "__main__":
-    sys.exit(subprocess.call([program(), *sys.argv[1:]]))
+    sys.exit(main())

@@ -13,8 +13,8 @@ from stickslip.style import COLOURS, RULE
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stickslip.family_stacks import FamilyStack
-    from stickslip.stacks import Stack
+    from stickslip._family_stacks import FamilyStack
+    from stickslip._stacks import Stack
 
 _EFFECTS = ("born", "splits", "merge", "dies")
 

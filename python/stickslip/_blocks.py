@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from stickslip import _native
 from stickslip._arrays import unmasked
-from stickslip.collisions import (
+from stickslip._collisions import (
     Floats,
     Method,
     OnError,
@@ -22,7 +22,7 @@ from stickslip.collisions import (
     eps_t_and_switch_count,
     psi_of_ratio,
 )
-from stickslip.maps import ATTRIBUTES
+from stickslip._maps import ATTRIBUTES
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset

@@ -15,7 +15,7 @@ from stickslip._tabular import Columns, Tabular, flat
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stickslip.formulas import FormulaSystem
+    from stickslip._formulas import FormulaSystem
 
 #: The values of parameters; mode, time and state at the start; the end; and settings.
 Rerun = tuple[list[float], tuple[int | None, float | None, list[float] | None], float | None, Any]

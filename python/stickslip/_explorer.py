@@ -14,9 +14,9 @@ from urllib.parse import parse_qs, quote, urlencode
 
 from stickslip import _native
 from stickslip._laws import laws
-from stickslip.atlases import Atlas
-from stickslip.collisions import Collision
-from stickslip.formulas import FormulaSystem
+from stickslip._atlases import Atlas
+from stickslip._collisions import Collision
+from stickslip._formulas import FormulaSystem
 
 Explored: TypeAlias = Collision | Atlas | FormulaSystem | str | None
 
@@ -68,14 +68,12 @@ class Explorer:
 def explore(shown: Explored = None, *, height: int = 760) -> Explorer:
     """The explorer: the switching of two spheres, or of a system, under one's finger.
 
-    Args:
-        shown: what it shows first: a collision at its place, an atlas with its window, a system of
-            formulas, or a link that was copied from the page (its part behind # is enough).
-        height: pixels in a notebook.
+    shown: what it shows first: a collision at its place, an atlas with its window, a system of
+    formulas, or a link that was copied from the page (its part behind # is enough). height: pixels
+    in a notebook.
 
-    Returns:
-        What a cell of a notebook shows; `.open()` opens it in a browser, `.save(file)` writes it.
-        A link that was copied from the page is read back by `explore(link).point`.
+    The result is what a cell of a notebook shows; `open()` opens it in a browser, and `save(file)`
+    writes it. A link that was copied from the page is read back by `explore(link).point`.
 
     >>> import stickslip
     >>> page = stickslip.explore(stickslip.collide(18, 0.5, damping=0.1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,13 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._arrays import numbers
+from stickslip._atlases import AtlasWarning
 from stickslip._planes import Plane
 from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
-from stickslip.collisions import Floats, _threads
+from stickslip._collisions import Floats, _threads
 
 if TYPE_CHECKING:
-    from stickslip.families import HybridFamily
+    from stickslip._families import HybridFamily
 
 Cancelled: TypeAlias = Callable[[], object]
 
@@ -163,11 +165,9 @@ class FamilyAtlas(Plane[_native.FamilyAtlas]):
         family: the same one. One that is finished is returned as it is. The other arguments are
         those of `trace_family`.
         """
-        from stickslip.families import _finish
-
         with reported(progress, f"trace of {self.family}") as report:
             calls = (report, cancelled)
-            return _finish(family._native.resume(self._native, _threads(threads), calls))
+            return finished(family._native.resume(self._native, _threads(threads), calls))
 
     @property
     def family(self) -> str:
@@ -370,3 +370,15 @@ def _count_events(itinerary: Itinerary | None) -> int:
     if itinerary is None or itinerary.kind not in ("fires", "begins"):
         return -1
     return len(itinerary.guards)
+
+
+def finished(found: tuple[_native.FamilyAtlas, BaseException | None]) -> FamilyAtlas:
+    """The atlas, unless an exception has ended the trace early."""
+    atlas, error = FamilyAtlas(found[0]), found[1]
+    if isinstance(error, KeyboardInterrupt):
+        raise TraceInterrupted(atlas) from error
+    if error is not None:
+        raise error
+    if atlas.finished and atlas.objection is not None:
+        warnings.warn(f"the atlas may be wrong: {atlas.objection}", AtlasWarning, stacklevel=3)
+    return atlas

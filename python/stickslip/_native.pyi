@@ -18,6 +18,7 @@ class ComputationError(RuntimeError): ...
 
 def has_fused_products() -> bool: ...
 def processor_has_fused_products() -> bool: ...
+def program(arguments: list[str]) -> int: ...
 def version() -> str: ...
 def explorer(view: str) -> str: ...
 def laws() -> str: ...
@@ -106,6 +107,7 @@ class FormulaSystem:
         end: float | None,
         settings: dict[str, Any],
         times: list[float] | None,
+        progress: _Report | None = None,
     ) -> dict[str, Any]: ...
     def converge(
         self,
@@ -117,6 +119,46 @@ class FormulaSystem:
         progress: _Report | None = None,
     ) -> dict[str, Any]: ...
 
+class OrbitSystem:
+    def __new__(cls, system: FormulaSystem) -> OrbitSystem: ...
+    def find(
+        self,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        itinerary: list[str],
+        durations: list[float] | None,
+    ) -> str: ...
+    def settled(
+        self,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        time: float,
+    ) -> str: ...
+    def continued(self, orbit: str, parameters: list[float]) -> str: ...
+    def doubled(self, orbit: str, parameter: int, aside: float) -> str: ...
+    def branch(
+        self,
+        orbit: str,
+        parameter: int,
+        interval: tuple[float, float],
+        longest_step: float,
+        most_points: int,
+    ) -> str: ...
+    def curve(
+        self,
+        special: str,
+        parameters: list[int],
+        window: list[list[float]],
+        longest_step: float,
+    ) -> str: ...
+    def course(self, orbit: str, parts: int) -> list[tuple[float, list[float]]]: ...
+
+def branch_picture(
+    title: str,
+    axes: tuple[str, str],
+    points: list[tuple[float, float, bool, bool]],
+    specials: list[tuple[str, float, float, int]],
+) -> str: ...
 def run_many(
     system: FormulaSystem,
     parameters: _Floats,
@@ -372,6 +414,7 @@ def run_hybrid(
     end: float,
     settings: dict[str, Any],
     output: tuple[_Floats | None, bool],
+    progress: _Report | None = None,
 ) -> dict[str, Any]: ...
 def evaluate_dense(
     segments: tuple[_Floats, _Floats, _Floats], end: tuple[float, _Floats], times: _Floats

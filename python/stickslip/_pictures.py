@@ -13,12 +13,12 @@ from stickslip.style import COLOURS, INK, PHASES, RULE, diverging, growing
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stickslip.collisions import Collision, Collisions
-    from stickslip.fits import Fit
-    from stickslip.gaining import GainingLines
-    from stickslip.impacts import Impacts
-    from stickslip.tables import RestitutionTable, VelocityTable
-    from stickslip.timesteps import TimeSteps
+    from stickslip._collisions import Collision, Collisions
+    from stickslip._fits import Fit
+    from stickslip._gaining import GainingLines
+    from stickslip._impacts import Impacts
+    from stickslip._tables import RestitutionTable, VelocityTable
+    from stickslip._timesteps import TimeSteps
 
 #: Phases by their characters in an itinerary.
 _PHASES = {"+": "slip +", "o": "stick", "-": "slip −"}

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 from stickslip import _atlas_results, _native
 from stickslip._axes import one
 from stickslip._tabular import Columns, Tabular
-from stickslip.collisions import Floats
+from stickslip._collisions import Floats
 from stickslip.style import BOUNDARIES, PLACES
 
 if TYPE_CHECKING:

@@ -7,12 +7,13 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 #: Called with what is done, and with all that is known to be done.
 Report: TypeAlias = Callable[[int, int], object]
 #: A callable; True for a bar on stderr.
 Progress: TypeAlias = Report | bool
+Found = TypeVar("Found")
 #: Seconds between two texts of a line.
 _INTERVAL = 0.1
 
@@ -24,16 +25,31 @@ def check(progress: Any) -> None:
         raise TypeError(f"progress is of type {kind}; expected a callable, or True for a bar")
 
 
-@contextmanager
-def keeping(make: Callable[[Any], object]) -> Iterator[None]:
+class keeping:
     """What Ctrl-C leaves of a native call becomes `partial` of the exception, made by `make`."""
-    try:
-        yield
-    except KeyboardInterrupt as stopped:
-        found = vars(stopped).get("partial")
-        if found is not None:
-            stopped.partial = make(found)  # type: ignore[attr-defined]
-        raise
+
+    def __init__(self, make: Callable[[Any], object]) -> None:
+        self.make = make
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, stopped: BaseException | None, traceback: object) -> None:
+        if isinstance(stopped, KeyboardInterrupt):
+            found = vars(stopped).get("partial")
+            if found is not None:
+                stopped.partial = self.make(found)  # type: ignore[attr-defined]
+
+
+def reporting(progress: Progress | None, what: str, run: Callable[[Report | None], Found]) -> Found:
+    """The result of `run`, which gets a callable that reports thousandths, and is done then."""
+    if progress is None:
+        return run(None)
+    with reported(progress, what) as report:
+        found = run(report)
+        if report is not None:
+            report(1000, 1000)
+        return found
 
 
 @contextmanager

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from stickslip._compiled import Compiled, Function
 from stickslip._derivatives import Rerun
+from stickslip._progress import Report
 from stickslip._recording import Tape
 from stickslip._solutions import DenseOutput, Solution
 from stickslip._symbols import CannotRecord, Symbol, Symbols, array_of
 from stickslip._systems import Guard, Mode, _Clock, _Source
-from stickslip.formulas import FormulaSystem
+from stickslip._formulas import FormulaSystem
 
 #: Places between steps, and events, at which formulas are compared with their functions.
 MOST_PLACES = 8
@@ -251,13 +252,14 @@ class Recorded:
         settings: dict[str, Any],
         times: list[float] | None,
         dense: bool,
+        report: Report | None,
     ) -> Solution:
         """Runs the system, and compares the formulas with their functions."""
         first, start, end = begin
         settings = {name: value for name, value in settings.items() if name != "guard_scale"}
         given = (first, start, self.state.tolist() + self.table.variables.flat.tolist())
         values = self.values or []
-        found = self.system._native.run(values, given, end, settings, times)
+        found = self.system._native.run(values, given, end, settings, times, report)
         self.compare(found, tuple(values))
         rerun: Rerun = (values, given, end, settings)
         names, variables = self.table.event_names, self.table.variables

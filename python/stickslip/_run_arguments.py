@@ -14,6 +14,10 @@ Floats: TypeAlias = NDArray[np.float64]
 METHODS = {"dop853": "dop853", "dopri5": "dopri5", "rk45": "dopri5"}
 
 
+#: Steps of a run, unless it says otherwise.
+MOST_STEPS = 10_000_000
+
+
 def method_name(method: str) -> str:
     found = METHODS.get(str(method).lower())
     if found is None:
@@ -46,6 +50,8 @@ def state_at_start(y0: ArrayLike) -> Floats:
 
 def times_within(t_eval: ArrayLike, start: float, end: float) -> Floats:
     times = _reals(t_eval, "t_eval")
+    if times.shape == (0,):
+        return times
     if times.ndim != 1:
         raise ValueError(f"t_eval has {times.ndim} dimensions; expected one")
     low, high = min(start, end), max(start, end)
@@ -59,18 +65,44 @@ def times_within(t_eval: ArrayLike, start: float, end: float) -> Floats:
 
 def settings_of(
     method: str,
-    rtol: float,
-    atol: float,
-    max_step: float,
-    first_step: float | None,
-    max_switches: int,
+    tolerances: tuple[ArrayLike, ArrayLike],
+    steps: tuple[float, float | None],
+    most: tuple[int, int],
+    components: int = 0,
 ) -> dict[str, Any]:
-    """The settings of runs, as the native module takes them."""
+    """The settings of runs, as the native module takes them.
+
+    tolerances: relative and absolute, each a number, or an array with one for each component. steps:
+    the longest one, and the first one. most: switches, and steps. Derivatives and the size of the
+    first step take the smallest tolerances.
+    """
+    rtol, atol, own = _tolerances(*tolerances, components)
+    max_step, first_step = steps
     return {
         "method": method_name(method),
-        "rtol": _number(rtol, "rtol"),
-        "atol": _number(atol, "atol"),
+        "rtol": rtol,
+        "atol": atol,
+        "tolerances": own,
         "max_step": _number(max_step, "max_step"),
         "first_step": None if first_step is None else _number(first_step, "first_step"),
-        "max_switches": _count(max_switches, "max_switches"),
+        "max_switches": _count(most[0], "max_switches"),
+        "max_steps": _count(most[1], "max_steps"),
     }
+
+
+def _tolerances(
+    rtol: ArrayLike, atol: ArrayLike, components: int
+) -> tuple[float, float, list[tuple[float, float]]]:
+    """The smallest of each, and those of the components if they differ."""
+    if type(rtol) is float and type(atol) is float:
+        return rtol, atol, []
+    both = {"rtol": _reals(rtol, "rtol"), "atol": _reals(atol, "atol")}
+    for name, value in both.items():
+        if value.size and (value == value.flat[0]).all():
+            both[name] = value.reshape(-1)[0]
+        elif value.shape != (components,) or not components:
+            few = f", or one for each of {components} components" if components else ""
+            raise ValueError(f"{name} has shape {value.shape}; expected a number{few}")
+    pairs = np.stack(np.broadcast_arrays(*both.values()), axis=-1).tolist()
+    own = [] if isinstance(pairs[0], float) else [(one, other) for one, other in pairs]
+    return float(both["rtol"].min()), float(both["atol"].min()), own

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from stickslip._derivatives import Sensitivities
     from stickslip._solutions import DenseOutput, Solution
-    from stickslip.families import Followed
+    from stickslip._families import Followed
 
 #: Times, states of shape (n, k), and modes: a line, interrupted by NaN where the state jumps.
 _Line: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.str_]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from xarray import Dataset
 
-    from stickslip.formulas import FormulaSystem
+    from stickslip._formulas import FormulaSystem
 
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal[
@@ -83,71 +83,226 @@ class DenseOutput:
 
 
 @dataclass(frozen=True)
-class Solution(Tabular):
-    """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
+class Beside:
+    """What a run has beside its state: values at its points, columns of its events, and what is in
+    these."""
 
-    #: Times, shape (k,): of the steps, or those of `t_eval`. A run that ends early ends with its
-    #: last point. Where an event changes the state, the steps have its time twice.
-    t: Floats
-    #: States, shape (n, k).
-    y: Floats
-    #: The mode at each time, shape (k,).
-    mode: NDArray[np.str_]
-    #: The variables at each time by their names, shape (k,), or (k, ...) for arrays.
     variables: dict[str, NDArray[np.float64]]
-    #: The sides of surfaces at each time by their names, shape (k,): 1 and -1, the signs, or 0
-    #: where the state slides.
     sides: dict[str, NDArray[np.int8]]
-    #: The state at any time, if it was asked for.
-    sol: DenseOutput | None
-    #: The times of the events of each name of `event_names`.
-    t_events: list[Floats]
-    #: The states there, before the event changes them, each of shape (events, n).
-    y_events: list[Floats]
-    #: Names of `events`, and then of guards, in the order in which they were added. Guards of
-    #: several modes may share a name.
-    event_names: list[str]
-    #: Everything that fired, in order: time, guard, mode `from` and `to`, state `before` and
-    #: `after` (shape (n,)), flatness, jump and simultaneous. An error of the guard, relative to its
-    #: largest value, moves the event by the error times `flatness`. `jump`: the guard jumps over
-    #: zero. `simultaneous`: guards that vanish there too, a tuple of names; if nothing changes,
-    #: they have fired with this one. `variables`: those after it. `sides_from` and `sides_to`, by
-    #: names of surfaces, and `unique`: whether the solution could go on in this way only.
-    events: NDArray[np.void]
-    #: Where a guard came so close to zero that a step had to decide: time, guard, mode and the
-    #: guard's value there, the margin.
-    touches: NDArray[np.void]
-    #: Where a guard changed its sign at a pole, and did not fire: time, guard and mode.
-    poles: NDArray[np.void]
-    #: Guards that crossed zero and did not act, because another one that acted before at the same
-    #: instant led to a mode without them: time, guard and mode.
-    preempted: NDArray[np.void]
-    #: Where events accumulated and the run went on behind them: time, its error, guard, mode `from`
-    #: and `to`.
-    rests: NDArray[np.void]
-    #: Whether all guards and events were decided. Those of callables are sampled: one that changes
-    #: faster than the state may have fired unseen. A `guard_scale` helps there.
-    decided: bool
+    columns: list[Any]
+    behind: dict[str, Any]
+
+
+#: Of a run without variables and surfaces.
+NOTHING_BESIDE = Beside({}, {}, [], {})
+
+
+class Solution(Tabular):
+    """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them.
+
+    What is not looked at is not made: a run of few steps takes less time than its tables.
+    """
+
     #: "decided", or "sampled: " with the reason why the functions could not be recorded.
     guards: str
-    #: 0 if the end was reached, 1 if a guard or an event ended the run, and else -1.
-    status: int
-    #: The same in a word: reached_end, ended_by_guard, zeno, switch_limit, step_limit,
-    #: instant_limit or failed.
-    outcome: Outcome
-    #: The same in a sentence.
-    message: str
-    #: Where the switches accumulate, if the outcome is zeno.
-    accumulation: float | None
-    #: Calls of right-hand sides.
-    nfev: int
-    #: Work of the solver, by the names of `stickslip_solver::Statistics`; empty if it failed.
-    statistics: dict[str, int]
     #: The methods are explicit: no Jacobians, no factors.
     njev: int = 0
     nlu: int = 0
+    #: What the native module has found, as columns.
+    _found: dict[str, Any]
+    _names: Names
+    _start: float
+    _dense: bool
+    _beside: Beside
     #: The system of formulas that has run, and with which arguments.
-    _again: Any = field(default=None, repr=False, compare=False)
+    _again: tuple[FormulaSystem, Rerun] | None
+
+    def __init__(
+        self,
+        found: dict[str, Any],
+        names: Names,
+        *,
+        start: float,
+        dense: bool,
+        guards: str,
+        beside: Beside | None = None,
+        again: tuple[FormulaSystem, Rerun] | None = None,
+    ) -> None:
+        if not dense:
+            for name in ("starts", "sizes", "coefficients", "segment_modes"):
+                found.pop(name, None)
+        self.__dict__.update(
+            _found=found,
+            _names=names,
+            _start=start,
+            _dense=dense,
+            _beside=beside or NOTHING_BESIDE,
+            _again=again,
+            guards=guards,
+        )
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"a Solution cannot be changed, nor {name!r} of it")
+
+    @property
+    def t(self) -> Floats:
+        """Times, shape (k,): of the steps, or those of `t_eval`. A run that ends early ends with its
+        last point. Where an event changes the state, the steps have its time twice."""
+        times: Floats = self._found["t"]
+        return times
+
+    @cached_property
+    def y(self) -> Floats:
+        """States, shape (n, k)."""
+        states: Floats = self._found["y"].reshape(self.t.size, self._found["end_state"].size).T
+        return states
+
+    @cached_property
+    def mode(self) -> NDArray[np.str_]:
+        """The mode at each time, shape (k,)."""
+        modes: NDArray[np.str_] = self._names.mode_array[self._found["modes"]]
+        return modes
+
+    @property
+    def variables(self) -> dict[str, NDArray[np.float64]]:
+        """The variables at each time by their names, shape (k,), or (k, ...) for arrays."""
+        return self._beside.variables
+
+    @property
+    def sides(self) -> dict[str, NDArray[np.int8]]:
+        """The sides of surfaces at each time by their names, shape (k,): 1 and -1, the signs, or 0
+        where the state slides."""
+        return self._beside.sides
+
+    @cached_property
+    def sol(self) -> DenseOutput | None:
+        """The state at any time, if it was asked for."""
+        if not self._dense:
+            return None
+        return DenseOutput(self._found, self._names.mode_array, self._start)
+
+    @cached_property
+    def _rows(self) -> list[NDArray[np.intp]]:
+        """The rows of `events` in which each name fired."""
+        stays = self._found["event_from"] == self._found["event_to"]
+        return _rows(self.events, self.event_names, stays, self.status == 1)
+
+    @cached_property
+    def t_events(self) -> list[Floats]:
+        """The times of the events of each name of `event_names`."""
+        return [self.events["time"][row] for row in self._rows]
+
+    @cached_property
+    def y_events(self) -> list[Floats]:
+        """The states there, before the event changes them, each of shape (events, n)."""
+        return [self.events["before"][row] for row in self._rows]
+
+    @cached_property
+    def event_names(self) -> list[str]:
+        """Names of `events`, and then of guards, in the order in which they were added. Guards of
+        several modes may share a name."""
+        return list(self._names.events)
+
+    @cached_property
+    def events(self) -> NDArray[np.void]:
+        """Everything that fired, in order: time, guard, mode `from` and `to`, state `before` and
+        `after` (shape (n,)), flatness, jump and simultaneous.
+
+        An error of the guard, relative to its largest value, moves the event by the error times
+        `flatness`. `jump`: the guard jumps over zero. `simultaneous`: guards that vanish there too,
+        a tuple of names; if nothing changes, they have fired with this one. `variables`: those after
+        it. `sides_from` and `sides_to`, by names of surfaces, and `unique`: whether the solution
+        could go on in this way only."""
+        found = _event_array(self._found, self._names, self._beside.columns)
+        for name, values in self._beside.behind.items():
+            column = found[name]
+            if isinstance(values, dict):
+                for part, one in values.items():
+                    column[part] = one
+            else:
+                found[name] = values
+        return found
+
+    @cached_property
+    def _places(self) -> dict[str, NDArray[np.void]]:
+        """Touches, poles, preempted and rests."""
+        modes, labels, found = self._names.modes, self._names.guards, self._found
+        touching, place, resting = _place_types(self._names.width)
+        rows = {
+            "touches": [(t, labels[at][g], modes[at], m) for t, at, g, m in found["touches"]],
+            "poles": [(t, labels[at][guard], modes[at]) for t, at, guard in found["poles"]],
+            "preempted": [(t, labels[at][guard], modes[at]) for t, at, guard in found["preempted"]],
+            "rests": [
+                (t, error, labels[left][guard], modes[left], modes[to])
+                for t, error, guard, left, to in found["rests"]
+            ],
+        }
+        types = (touching, place, place, resting)
+        both = zip(rows.items(), types, strict=True)
+        return {name: np.array(row, dtype=dtype) for (name, row), dtype in both}
+
+    @property
+    def touches(self) -> NDArray[np.void]:
+        """Where a guard came so close to zero that a step had to decide: time, guard, mode and the
+        guard's value there, the margin."""
+        return self._places["touches"]
+
+    @property
+    def poles(self) -> NDArray[np.void]:
+        """Where a guard changed its sign at a pole, and did not fire: time, guard and mode."""
+        return self._places["poles"]
+
+    @property
+    def preempted(self) -> NDArray[np.void]:
+        """Guards that crossed zero and did not act, because another one that acted before at the
+        same instant led to a mode without them: time, guard and mode."""
+        return self._places["preempted"]
+
+    @property
+    def rests(self) -> NDArray[np.void]:
+        """Where events accumulated and the run went on behind them: time, its error, guard, mode
+        `from` and `to`."""
+        return self._places["rests"]
+
+    @property
+    def decided(self) -> bool:
+        """Whether all guards and events were decided. Those of callables are sampled: one that
+        changes faster than the state may have fired unseen. A `guard_scale` helps there."""
+        return bool(self._found["decided"])
+
+    @property
+    def status(self) -> int:
+        """0 if the end was reached, 1 if a guard or an event ended the run, and else -1."""
+        return int(self._found["status"])
+
+    @property
+    def outcome(self) -> Outcome:
+        """The same in a word: reached_end, ended_by_guard, zeno, switch_limit, step_limit,
+        instant_limit or failed."""
+        outcome: Outcome = self._found["outcome"]
+        return outcome
+
+    @property
+    def message(self) -> str:
+        """The same in a sentence."""
+        return str(self._found["message"])
+
+    @property
+    def accumulation(self) -> float | None:
+        """Where the switches accumulate, if the outcome is zeno."""
+        place: float | None = self._found["accumulation"]
+        return place
+
+    @property
+    def nfev(self) -> int:
+        """Calls of right-hand sides."""
+        return int(self._found["nfev"])
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """Work of the solver, by the names of `stickslip_solver::Statistics`; empty if it failed."""
+        counts: dict[str, int] = self._found["statistics"]
+        return counts
 
     @property
     def system(self) -> FormulaSystem | None:
@@ -239,9 +394,12 @@ class Solution(Tabular):
         return self.status >= 0
 
     def __getitem__(self, name: str) -> Any:
-        if name not in {*self.__dataclass_fields__, "success"}:
+        if name.startswith("_") or callable(getattr(Solution, name, None)):
             raise KeyError(name)
-        return getattr(self, name)
+        try:
+            return getattr(self, name)
+        except AttributeError:
+            raise KeyError(name) from None
 
     def __repr__(self) -> str:
         shape = f"y of shape {self.y.shape}, {self.events.size} events, nfev = {self.nfev}"
@@ -299,13 +457,10 @@ def variable_columns(variables: Named) -> list[Any]:
     return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
 
 
-def with_variables(
-    found: dict[str, Any], variables: Named | None
-) -> tuple[list[Any], Columns, Columns]:
-    """Takes the variables, which are the last components, out of the states that were `found`. The
-    result is their column of events, their values at the points, and those behind events."""
+def with_variables(found: dict[str, Any], variables: Named | None) -> Beside | None:
+    """Takes the variables, which are the last components, out of the states that were `found`."""
     if not variables:
-        return [], {}, {}
+        return None
     held = variables.flat.size
     size = found["end_state"].size
     of: dict[str, Columns] = {}
@@ -315,13 +470,13 @@ def with_variables(
             found[name] = np.ascontiguousarray(rows[:, :-held]).reshape(-1)
             of[name] = variables.columns(rows[:, size - held :])
     found["end_state"] = found["end_state"][:-held]
-    return variable_columns(variables), of["y"], of["event_after"]
+    behind = {"variables": of["event_after"]}
+    return Beside(of["y"], {}, variable_columns(variables), behind)
 
 
-def event_array(
-    found: dict[str, Any], dimension: int, names: Names, extra: list[Any]
-) -> NDArray[np.void]:
+def _event_array(found: dict[str, Any], names: Names, extra: list[Any]) -> NDArray[np.void]:
     """Everything that fired, in order, with room for further columns."""
+    dimension = found["end_state"].size
     dtype = _event_type(names.width, dimension)
     if extra:
         dtype = np.dtype([*_event_columns(names.width, dimension), *extra])
@@ -343,59 +498,6 @@ def event_array(
     for row, others in enumerate(found["event_simultaneous"]):
         together[row] = tuple(guards[left[row]][guard] for guard in others)
     return events
-
-
-def solution_of(
-    found: dict[str, Any],
-    events: NDArray[np.void],
-    names: Names,
-    *,
-    start: float,
-    dense: bool,
-    guards: str,
-    variables: dict[str, NDArray[np.float64]] | None = None,
-    sides: dict[str, NDArray[np.int8]] | None = None,
-    again: tuple[FormulaSystem, Rerun] | None = None,
-) -> Solution:
-    """The solution that the native module has found, as columns."""
-    modes, labels, event_names = names.mode_array, names.guards, list(names.events)
-    touching, place, resting = _place_types(names.width)
-    touches = [(t, labels[mode][g], modes[mode], m) for t, mode, g, m in found["touches"]]
-    poles, preempted = (
-        [(t, labels[mode][guard], modes[mode]) for t, mode, guard in found[kind]]
-        for kind in ("poles", "preempted")
-    )
-    rests = [
-        (t, error, labels[left][guard], modes[left], modes[to])
-        for t, error, guard, left, to in found["rests"]
-    ]
-    stays = found["event_from"] == found["event_to"]
-    rows = _rows(events, event_names, stays, found["status"] == 1)
-    return Solution(
-        t=found["t"],
-        y=found["y"].reshape(found["t"].size, found["end_state"].size).T,
-        mode=modes[found["modes"]],
-        variables=variables or {},
-        sides=sides or {},
-        sol=DenseOutput(found, modes, start) if dense else None,
-        t_events=[events["time"][row] for row in rows],
-        y_events=[events["before"][row] for row in rows],
-        event_names=event_names,
-        events=events,
-        touches=np.array(touches, dtype=touching),
-        poles=np.array(poles, dtype=place),
-        preempted=np.array(preempted, dtype=place),
-        rests=np.array(rests, dtype=resting),
-        decided=found["decided"],
-        guards=guards,
-        status=found["status"],
-        outcome=found["outcome"],
-        message=found["message"],
-        accumulation=found["accumulation"],
-        nfev=found["nfev"],
-        statistics=found["statistics"],
-        _again=again,
-    )
 
 
 def _rows(

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from stickslip import _native
 from stickslip._blocks import QUANTITIES, SCHEMA, Engine, Plan, aligned
-from stickslip.collisions import (
+from stickslip._collisions import (
     OnError,
     eps_t_and_switch_count,
 )

@@ -13,7 +13,7 @@ from stickslip.style import COLOURS
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stickslip.studies import Table
+    from stickslip._studies import Table
 
 _METHODS = ("method", "coordinates", "switches")
 #: What is drawn of a table unless it is said: x, y, and the columns that tell lines apart.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip
-from stickslip.collisions import DERIVED, MOMENT, SWITCH, Method
+from stickslip._collisions import DERIVED, MOMENT, SWITCH, Method
 
 DATA = Path(__file__).parents[2] / "tests" / "data"
 

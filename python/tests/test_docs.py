@@ -9,8 +9,11 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGES = [
+    ROOT / "README.md",
     ROOT / "python" / "README.md",
+    ROOT / "site" / "tutorial.md",
     ROOT / "docs" / "explorer.md",
+    ROOT / "docs" / "systems.md",
     *sorted((ROOT / "docs" / "python").glob("*.md")),
 ]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -20,7 +23,7 @@ def test_there_are_pages() -> None:
     assert "coming-from-solve-ivp.md" in {page.name for page in PAGES}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_blocks_run(page: Path, tmp_path: Path) -> None:
     text = page.read_text(encoding="utf-8")
     blocks = BLOCK.findall(text)
@@ -31,6 +34,8 @@ def test_blocks_run(page: Path, tmp_path: Path) -> None:
         first = text[: match.start()].count("\n") + 1
         lines = match.group(1).splitlines()
         script[first : first + len(lines)] = lines
+    # Some blocks read systems, as from the folder of the repository.
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
     path = tmp_path / f"{page.stem}.py"
     path.write_text("\n".join(script), encoding="utf-8")
     found = subprocess.run(

@@ -976,7 +976,7 @@ def test_options():
     for name, value in [
         ("method", "Radau"),
         ("rtol", 0.0),
-        ("rtol", [1e-3, 1e-4]),
+        ("rtol", [1e-3, 1e-4, 1e-5]),
         ("atol", -1.0),
         ("atol", None),
         ("max_step", 0.0),

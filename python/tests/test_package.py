@@ -4,8 +4,11 @@ import ast
 import inspect
 import os
 import pydoc
+import signal
 import subprocess
 import sys
+import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ import pytest
 import stickslip
 
 SOURCE = Path(stickslip.__file__).read_text(encoding="utf-8")
+BESIDE = Path(sys.executable).parent / "stickslip"
 
 
 def test_signatures_are_short() -> None:
@@ -42,7 +46,7 @@ def test_names_are_imported_when_they_are_used() -> None:
     assert set(stickslip.__all__) <= set(dir(stickslip))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = stickslip.nothing
-    assert stickslip.maps.map is stickslip.map and stickslip.__version__
+    assert stickslip._maps.map is stickslip.map and stickslip.__version__
 
 
 def test_an_import_takes_little() -> None:
@@ -67,25 +71,36 @@ print(*sys.modules)
     assert not heavy & set(second.split())
 
 
-def run(arguments: list[str], path: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "stickslip", *arguments],
-        env=os.environ | {"PATH": str(path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+def test_the_package_has_the_program(tmp_path: Path) -> None:
+    """As a module, and as the command that is installed beside the interpreter."""
+    arguments = ["collide", "--kappa", "63", "--psi", "0.5"]
+    whole = None
+    for command in ([sys.executable, "-m", "stickslip"], [str(BESIDE)]):
+        if command == [str(BESIDE)] and not BESIDE.exists():
+            continue
+        run = partial(subprocess.run, capture_output=True, text=True, check=False, cwd=tmp_path)
+        found = run([*command, *arguments])
+        assert found.returncode == 0 and "+o-o+o-" in found.stdout
+        assert whole in (None, found.stdout)
+        whole = found.stdout
+        assert run([*command, "--version"]).stdout.startswith(f"stickslip {stickslip.__version__}")
+        wrong = run([*command, "collide", "--kappa", "-1", "--psi", "1"])
+        assert wrong.returncode == 2 and "kappa" in wrong.stderr
+        failed = run([*command, "impact", "missing.json"])
+        assert failed.returncode in (1, 2) and "missing.json" in failed.stderr
 
 
-@pytest.mark.skipif(os.name != "posix", reason="the program is a script here")
-def test_the_program_is_found(tmp_path: Path) -> None:
-    beside = Path(sys.executable).parent / "stickslip"
-    if beside.exists():
-        pytest.skip("a program is installed beside the interpreter")
-    missing = run(["collide"], tmp_path)
-    assert missing.returncode == 1 and "stickslip is not installed" in missing.stderr
-    program = tmp_path / "stickslip"
-    program.write_text('#!/bin/sh\necho "$@"\nexit 3\n')
-    program.chmod(0o755)
-    found = run(["collide", "63", "two words"], tmp_path)
-    assert (found.returncode, found.stdout) == (3, "collide 63 two words\n")
+@pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
+def test_an_interrupt_ends_the_program(tmp_path: Path) -> None:
+    """What is not complete is removed."""
+    given, folder = tmp_path / "cases.csv", tmp_path / "results"
+    given.write_text("kappa,psi\n" + "1e6,1\n" * 100_000)
+    folder.mkdir()
+    batch = ["collide", "--method", "dop853", "--batch", str(given), "--out", "results.csv"]
+    with subprocess.Popen([sys.executable, "-m", "stickslip", *batch], cwd=folder) as running:
+        while not any(folder.iterdir()):
+            assert running.poll() is None
+            time.sleep(0.01)
+        running.send_signal(signal.SIGINT)
+        assert running.wait(10) == -signal.SIGINT
+    assert list(folder.iterdir()) == []

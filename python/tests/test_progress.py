@@ -1,8 +1,10 @@
 """Progress of long calls."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from results import COARSE, FEW, WINDOW, family
 
@@ -56,3 +58,43 @@ def test_what_is_no_progress_is_refused(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="progress is of type str"):
         stickslip.write_sweep(tmp_path / "s", 1.0, 0.5, progress="yes")  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
+
+
+OSCILLATOR = "state x = 1, v = 0\nx' = v\nv' = -1e6*x\nend = 100"
+
+
+def oscillate(t: float, y: np.ndarray) -> list[float]:
+    return [y[1], -1e6 * y[0]]
+
+
+@pytest.mark.parametrize(
+    "run",
+    [
+        lambda report: stickslip.system(OSCILLATOR).solve(t_eval=[], progress=report),
+        lambda report: stickslip.solve(
+            oscillate, (0, 100), [1, 0], t_eval=[], progress=report
+        ),
+        lambda report: stickslip.solve(
+            oscillate, (3, 1), [1, 0], t_eval=[], record=False, progress=report
+        ),
+    ],
+)
+def test_a_run_says_how_far_it_is(run: Callable[[object], stickslip.Solution]) -> None:
+    told: list[tuple[int, int]] = []
+    found = run(lambda done, steps: told.append((done, steps)))
+    assert found.success and len(told) > 2
+    assert told == sorted(told) and told[-1] == (1000, 1000) and told[0][0] < 1000
+
+    def fails(done: int, steps: int) -> None:
+        raise ArithmeticError(done)
+
+    with pytest.raises(ArithmeticError):
+        run(fails)
+
+
+def test_a_run_without_an_end_is_never_done() -> None:
+    told: list[int] = []
+    stickslip.system(OSCILLATOR.replace("end = 100", "when t > 60 -> end")).solve(
+        t_eval=[], progress=lambda done, steps: told.append(done)
+    )
+    assert set(told[:-1]) == {0} and told[-1] == 1000

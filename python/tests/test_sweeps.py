@@ -20,7 +20,7 @@ import pytest
 import stickslip
 from stickslip import _blocks, _stores
 from stickslip._blocks import QUANTITIES, SCHEMA
-from stickslip.sweeps import sweep, write_sweep
+from stickslip._sweeps import sweep, write_sweep
 
 xr = pytest.importorskip("xarray")
 da = pytest.importorskip("dask.array")

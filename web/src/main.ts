@@ -39,6 +39,8 @@ const WINDOWS: Record<Axes, Partial<State>> = {
 };
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
+const TABS = ["spheres", "system"] as const;
+
 class Page {
   readonly store: Store;
   private preset: string;
@@ -173,8 +175,11 @@ class Page {
       if (input !== document.activeElement || input.type === "range") input.value = String(value);
     };
     const spheres = state.tab === "spheres";
-    byId("tab-spheres").setAttribute("aria-selected", String(spheres));
-    byId("tab-system").setAttribute("aria-selected", String(!spheres));
+    for (const tab of TABS) {
+      const button = byId<HTMLButtonElement>(`tab-${tab}`);
+      button.setAttribute("aria-selected", String(tab === state.tab));
+      button.tabIndex = tab === state.tab ? 0 : -1;
+    }
     set("preset", this.preset);
     byId("caption").textContent = presetOf(this.preset).caption;
     set("axes", state.axes);
@@ -352,8 +357,17 @@ class Page {
     const choice = byId<HTMLSelectElement>("preset");
     choice.append(...PRESETS.map(({ id, name }) => make("option", { value: id }, name)));
     on("preset", "change", ({ value }) => this.go(presetOf(value).state, value));
-    for (const tab of ["spheres", "system"] as const)
-      byId(`tab-${tab}`).onclick = () => store.change({ tab });
+    TABS.forEach((tab, place) => {
+      const button = byId(`tab-${tab}`);
+      button.onclick = () => store.change({ tab });
+      button.onkeydown = ({ key }) => {
+        const to = { ArrowLeft: place - 1, ArrowRight: place + 1, Home: 0, End: -1 };
+        const next = key in to && TABS.at(to[key as keyof typeof to] % TABS.length);
+        if (!next) return;
+        store.change({ tab: next });
+        byId(`tab-${next}`).focus();
+      };
+    });
     on("axes", "change", ({ value }) => {
       const axes = value as Axes;
       const { x, y, point } = WINDOWS[axes];

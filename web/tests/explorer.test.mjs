@@ -149,6 +149,23 @@ ofPage("wheel, Shift and keys change the window, and undo goes back", "", async 
   assert.deepEqual(await window(), first);
 });
 
+ofPage("arrows move between the tabs", "", async (page) => {
+  const selected = () => page.getAttribute('[role="tab"][aria-selected="true"]', "id");
+  await page.focus("#tab-spheres");
+  for (const [key, id] of [
+    ["ArrowRight", "tab-system"],
+    ["ArrowRight", "tab-spheres"],
+    ["ArrowLeft", "tab-system"],
+    ["Home", "tab-spheres"],
+    ["End", "tab-system"],
+  ]) {
+    await page.keyboard.press(key);
+    await page.waitForFunction((it) => document.activeElement?.id === it, id);
+    assert.equal(await selected(), id);
+    assert.equal(await page.locator('[role="tab"][tabindex="0"]').count(), 1);
+  }
+});
+
 ofPage("two fingers zoom", "", async (page) => {
   await mapped(page);
   const low = await page.evaluate(() => {

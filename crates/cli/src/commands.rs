@@ -3,9 +3,11 @@
 //! is in `shared`.
 
 mod asymptote;
+mod branch;
 mod collide;
 mod completions;
 mod converge;
+mod curve;
 mod explore;
 mod fit;
 mod impact;
@@ -14,6 +16,7 @@ mod laws;
 mod locate;
 mod man;
 mod map;
+mod orbit;
 mod reproduce;
 mod run;
 mod stack;
@@ -47,6 +50,9 @@ pub enum Command {
     Join(join::JoinArguments),
     Run(run::RunArguments),
     System(system::SystemArguments),
+    Orbit(orbit::OrbitArguments),
+    Branch(branch::BranchArguments),
+    Curve(curve::CurveArguments),
     Trace(trace::TraceArguments),
     Stack(stack::StackArguments),
     Locate(locate::LocateArguments),
@@ -75,6 +81,9 @@ impl Command {
             Self::Join(arguments) => join::run(arguments),
             Self::Run(arguments) => run::run(arguments),
             Self::System(arguments) => system::run(arguments),
+            Self::Orbit(arguments) => orbit::run(arguments),
+            Self::Branch(arguments) => branch::run(arguments),
+            Self::Curve(arguments) => curve::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),
             Self::Stack(arguments) => stack::run(arguments),
             Self::Locate(arguments) => locate::run(arguments),

@@ -1,4 +1,4 @@
-//! What can go wrong, and the exit code that tells it.
+//! What can go wrong, and its exit code.
 
 use std::fmt::Display;
 use std::io;
@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_files::FileError;
 use stickslip_model::CollisionFailure;
+use stickslip_orbits::OrbitError;
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
 use stickslip_practice::fit::FitError;
@@ -92,6 +93,9 @@ pub enum Failure {
         /// Where it is wrong, and how.
         error: stickslip_expression::TextError,
     },
+    /// There is no orbit, or no branch.
+    #[error("{0}")]
+    Orbit(OrbitError),
     /// A run of a system failed.
     #[error("the run failed: {0}")]
     Run(String),

@@ -1,8 +1,8 @@
 //! The program `stickslip`: a command checks its options and carries them out, and the result
 //! becomes an exit code.
 //!
-//! It is a library only so that tests and fuzz targets can carry out command lines without starting
-//! a process for each.
+//! It is a library so that the Python package has the program too, and tests and fuzz targets carry
+//! out command lines without starting a process for each.
 //!
 //! Start reading here; then, in this order: `commands` (one file for each), `shared` (options that
 //! several commands have, and what they lead to), `output` (what is shown), `page` (the page of
@@ -32,7 +32,14 @@ use version::NAME;
 /// Carries out the command line of this process and reports what went wrong.
 #[must_use]
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    ExitCode::from(program(std::env::args_os()))
+}
+
+/// Carries out a command line, which begins with the program's name, and reports what went wrong:
+/// the exit code.
+#[must_use]
+pub fn program(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(reply) => return answer(&reply),
     };
@@ -41,29 +48,29 @@ pub fn main() -> ExitCode {
         say(format_args!("warning: signals cannot be watched: {error}"));
     }
     match arguments.command.run() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             say(format_args!("error: {failure}"));
             if failure.is_usage() {
                 say("\nFor more information, try '--help'.");
             }
-            ExitCode::from(failure.code())
+            failure.code()
         }
     }
 }
 
 /// Shows a help text, the version, or what is wrong with the arguments.
-fn answer(reply: &clap::Error) -> ExitCode {
+fn answer(reply: &clap::Error) -> u8 {
     match reply.print() {
         // If standard error is closed, nobody wants to know.
-        _ if reply.use_stderr() => ExitCode::from(u8::try_from(reply.exit_code()).unwrap_or(2)),
+        _ if reply.use_stderr() => u8::try_from(reply.exit_code()).unwrap_or(2),
         // Nobody may read the help text any more. That is not a failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             let failure = Failure::Stdout(error);
             say(format_args!("error: {failure}"));
-            ExitCode::from(failure.code())
+            failure.code()
         }
-        _ => ExitCode::SUCCESS,
+        _ => 0,
     }
 }
 

@@ -8,6 +8,7 @@ pub mod report;
 use askama::Template;
 use stickslip_figure::markup::plain;
 use stickslip_figure::number;
+use stickslip_figure::pictures::studies::Picture;
 use stickslip_plane::Range;
 use stickslip_reproduction::figures::{Section, boundaries, figure2, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
@@ -32,6 +33,9 @@ pub const INTRODUCTION: [&str; 2] = [
 /// The most columns of a table that a narrow screen shows side by side.
 const MOST_NARROW: usize = 7;
 
+/// The section whose first picture opens the page.
+const OPENING: &str = "boundaries";
+
 #[derive(Template)]
 #[template(path = "page.html")]
 struct Page<'a> {
@@ -46,6 +50,17 @@ impl Page<'_> {
     /// Whether this is the page with everything.
     fn is_whole(&self) -> bool {
         self.command == "reproduce"
+    }
+
+    /// How many pictures of a section stand above its findings.
+    fn key(&self) -> usize {
+        usize::from(self.is_whole())
+    }
+
+    /// The picture at the top, with the section that it leads to: the whole plane.
+    fn opening(&self) -> impl Iterator<Item = (&str, &Picture)> {
+        let plane = self.sections.iter().filter(|section| section.study.name == OPENING);
+        plane.filter_map(|section| section.pictures.first().map(|picture| (OPENING, picture)))
     }
 
     /// The audits among the parts, of which there is one.

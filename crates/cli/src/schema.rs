@@ -2,6 +2,7 @@
 //! field disappears or changes its meaning.
 
 use stickslip_model::document;
+use stickslip_orbits::document as orbits;
 use stickslip_plane::{atlas, gaining, stack};
 use stickslip_practice::{fit, tables, time_steps};
 use stickslip_reproduction::statements;
@@ -14,7 +15,7 @@ pub const REPORT: &str = "stickslip.report/1";
 pub const RUN: &str = "stickslip.run/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 14] = [
+pub const ALL: [&str; 17] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
@@ -29,4 +30,7 @@ pub const ALL: [&str; 14] = [
     fit::SCHEMA,
     REPORT,
     RUN,
+    orbits::ORBIT,
+    orbits::BRANCH,
+    orbits::CURVE,
 ];

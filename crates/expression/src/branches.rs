@@ -37,8 +37,9 @@ pub(crate) struct Branched {
 }
 
 impl System {
-    /// Whether equations branch.
-    pub(crate) fn branches(&self) -> bool {
+    /// Whether equations jump within a mode: by an `if` on what moves, by `sign`, or by `floor`.
+    #[must_use]
+    pub fn branches(&self) -> bool {
         !collected(&mut self.graph.clone(), self).is_empty()
     }
 

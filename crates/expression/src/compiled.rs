@@ -231,6 +231,7 @@ impl Compiled {
         Ok(Runnable {
             branched,
             state: state?,
+            tolerances: Vec::new(),
             modes: self.modes.iter().map(|mode| mode.with(parameters)).collect(),
             ticks,
             first,

@@ -6,7 +6,7 @@ use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, InvalidValue, Options, RunError};
 use stickslip_tracer::{
     DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun,
-    Itinerary, Point,
+    Itinerary, Point, Window,
 };
 
 pub use align::RuleOrder;
@@ -65,6 +65,17 @@ impl DynamicProblem for Plane {
         let end = self.end.unwrap_or(system.end());
         (end > s).then_some(DynamicSetting { system, mode, s, state, end })
     }
+}
+
+/// Where runs in a window have so many events that they accumulate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Accumulation {
+    /// The events up to which runs should be told apart.
+    pub events: usize,
+    /// The number of runs on a lattice in which events accumulate.
+    pub runs: usize,
+    /// The number of runs on the lattice.
+    pub of: usize,
 }
 
 impl SystemFamily {
@@ -137,6 +148,63 @@ impl SystemFamily {
             *own = value;
         }
         other
+    }
+
+    /// The same family, in which runs are told apart up to so many events.
+    #[must_use]
+    pub fn up_to(mut self, events: usize) -> Self {
+        self.runs.options.max_switches = events;
+        self
+    }
+
+    /// The events up to which runs in a window should be told apart, if events accumulate in some
+    /// of them; `None` if this is seen nowhere.
+    ///
+    /// Where events accumulate there are boundaries without end, and a run may have more events
+    /// than can be waited for. Runs on a lattice are followed up to 200 events. Nine tenths of
+    /// those that end have no more than the result, which is from 4 to 12.
+    ///
+    /// ```
+    /// use stickslip_expression::{SystemFamily, parse};
+    /// use stickslip_solver::Options;
+    /// use stickslip_tracer::{Point, Window};
+    ///
+    /// let ball = parse(include_str!("../../../examples/systems/ball.slip"))?;
+    /// let axes = ["e", "g"].map(|name| {
+    ///     ball.parameters.iter().position(|parameter| parameter.name == name).expect("known")
+    /// });
+    /// let values: Vec<f64> = ball.parameters.iter().map(|parameter| parameter.value).collect();
+    /// let family = SystemFamily::new(&ball, axes, &values, None, Options::default())?;
+    /// let window = Window { low: Point::new(0.3, 5.0), high: Point::new(0.7, 15.0) };
+    /// let few = family.accumulation(&window).expect("bounces accumulate");
+    /// assert!((4..=12).contains(&few.events) && few.runs > 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn accumulation(&self, window: &Window) -> Option<Accumulation> {
+        const CELLS: usize = 16;
+        const MANY: usize = 200;
+        const MOST: usize = 12;
+        const LEAST: usize = 4;
+        let few = self.clone().up_to(MANY);
+        let cell = window.extent() / CELLS as f64;
+        let place = |index: usize| {
+            let part = Point::new((index / CELLS) as f64 + 0.5, (index % CELLS) as f64 + 0.5);
+            window.low + cell.component_mul(&part)
+        };
+        let labels = (0..CELLS * CELLS).filter_map(|index| few.label(&place(index)).ok());
+        let (mut runs, mut counts) = (0, Vec::new());
+        for label in labels {
+            match label {
+                Itinerary::Fires(events) => counts.push(events.len()),
+                Itinerary::Begins(_) | Itinerary::Accumulates => runs += 1,
+                Itinerary::Unfinished | Itinerary::Fails => {}
+            }
+        }
+        counts.sort_unstable();
+        let most = counts.get(counts.len() * 9 / 10).map_or(LEAST, |&most| most);
+        let events = most.clamp(LEAST, MOST);
+        (runs > 0).then_some(Accumulation { events, runs, of: CELLS * CELLS })
     }
 
     /// The run at `point`; `None` if there is none.

@@ -67,7 +67,7 @@ pub const fn outcome_name(outcome: Outcome) -> &'static str {
 }
 
 struct Recorder<'a> {
-    stops: &'a dyn Fn() -> bool,
+    stops: &'a dyn Fn(f64) -> bool,
     events: Vec<DynamicSwitch<usize>>,
     touches: Vec<Grazing<usize>>,
     poles: Vec<Pole<usize>>,
@@ -79,8 +79,8 @@ struct Recorder<'a> {
 impl DynamicObserver<usize> for Recorder<'_> {
     const WANTS_SEGMENTS: bool = true;
 
-    fn stops(&self) -> bool {
-        (self.stops)()
+    fn stops(&self, s: f64) -> bool {
+        (self.stops)(s)
     }
 
     fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
@@ -130,17 +130,17 @@ impl Runnable {
         end: f64,
         options: &Options,
     ) -> Result<Recording, RunError> {
-        self.record_unless(&|| false, method, end, options)
+        self.record_unless(&|_| false, method, end, options)
     }
 
-    /// As [`Self::record`], and stops where `stops`, which is called after every step and every
-    /// event, returns `true`.
+    /// As [`Self::record`], and stops where `stops`, which is called with the time after every step
+    /// and every event, returns `true`.
     ///
     /// # Errors
     /// [`RunError`], as of a run of any system.
     pub fn record_unless(
         &self,
-        stops: &dyn Fn() -> bool,
+        stops: &dyn Fn(f64) -> bool,
         method: EmbeddedPair,
         end: f64,
         options: &Options,
@@ -163,7 +163,7 @@ impl Runnable {
     /// Records a run whose branches are no events.
     pub(crate) fn record_as_it_is(
         &self,
-        stops: &dyn Fn() -> bool,
+        stops: &dyn Fn(f64) -> bool,
         method: EmbeddedPair,
         end: f64,
         options: &Options,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 use stickslip_number::Number;
 use stickslip_solver::dynamic::{DynamicStart, ReadableDynamic};
-use stickslip_solver::{Guard, InvalidValue, Schedule, Times};
+use stickslip_solver::{Guard, InvalidValue, Options, Schedule, Times};
 
 use crate::program::Program;
 use crate::system::Next;
@@ -20,6 +20,8 @@ pub struct Runnable {
     pub(crate) start: f64,
     pub(crate) end: f64,
     pub(crate) state: Vec<f64>,
+    /// Relative and absolute tolerances of components, if they have their own.
+    pub(crate) tolerances: Vec<(f64, f64)>,
     /// The same system with its branches as events, and what its further components are on a state.
     pub(crate) branched: Option<Box<(Self, Program)>>,
 }
@@ -115,6 +117,22 @@ impl Runnable {
         Ok(self)
     }
 
+    /// The same system with a relative and an absolute tolerance for each of its first components,
+    /// in the place of those of the options.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] if there are more than components, or if one is out of its range.
+    pub fn with_tolerances(mut self, tolerances: Vec<(f64, f64)>) -> Result<Self, InvalidValue> {
+        let (count, accepted) = (tolerances.len(), tolerances.len() <= self.state.len());
+        InvalidValue::check("the number of tolerances", count, "that of components", accepted)?;
+        for &(rtol, atol) in &tolerances {
+            let options = Options { rtol, atol, ..Options::default() };
+            options.validate()?;
+        }
+        self.tolerances = tolerances;
+        Ok(self)
+    }
+
     /// The same run with branches as events, if there are any.
     pub(crate) fn with_branches(&self) -> Option<Self> {
         let (branched, starts) = &**self.branched.as_ref()?;
@@ -123,7 +141,8 @@ impl Runnable {
         let state = [&self.state[..], &branches].concat();
         let finite = branches.iter().all(|it| it.is_finite());
         let (first, start, end) = (self.first, self.start, self.end);
-        finite.then(|| Self { first, start, end, state, ..branched.clone() })
+        let tolerances = self.tolerances.clone();
+        finite.then(|| Self { first, start, end, state, tolerances, ..branched.clone() })
     }
 
     /// Where a run ends; infinite if the system does not say.
@@ -151,6 +170,9 @@ impl ReadableDynamic for Runnable {
     #[inline]
     fn guard_values<T: Number>(&self, mode: usize, s: T, y: &[T], values: &mut [T]) {
         self.modes[mode].values.run(s, y, values);
+    }
+    fn tolerances(&self) -> &[(f64, f64)] {
+        &self.tolerances
     }
     fn reads(&self, mode: usize) -> &[usize] {
         &self.modes[mode].reads

@@ -123,7 +123,7 @@ impl System {
         }
         let extended = Extended::of(branched.as_ref().map_or(self, |it| &it.system), by);
         let runnable = extended.system.compile_as_it_is()?.with(parameters)?;
-        let mut recording = runnable.record_as_it_is(&|| false, method, end, options)?;
+        let mut recording = runnable.record_as_it_is(&|_| false, method, end, options)?;
         let rules: Vec<usize> = self.modes.iter().map(|mode| mode.rules.len()).collect();
         extended.require_jumps_alone(&recording, &rules)?;
         let mut places = extended.places(&recording, parameters, end_moves, &rules);

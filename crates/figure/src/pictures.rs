@@ -3,10 +3,11 @@
 //! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`]
 //! (series of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a
 //! plane), [`family`] (an atlas of any family), [`stack`] (atlases over the damping), [`run`] (the
-//! course of a run), and what users of particle codes and studies compute: `fit`, `time_steps` and
-//! `studies`, each behind a feature.
+//! course of a run), [`branch`] (orbits over a parameter), and what users of particle codes and
+//! studies compute: `fit`, `time_steps` and `studies`, each behind a feature.
 
 pub mod atlas;
+pub mod branch;
 pub mod chart;
 pub mod collision;
 pub mod course;

@@ -5,7 +5,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use pyo3::prelude::*;
@@ -15,41 +15,56 @@ use crate::failure::failed;
 use crate::hybrid::trouble::lock;
 use crate::parallel::{PAUSE, Threads};
 
-/// A look for Ctrl-C now and then, from a run on the thread of Python.
+/// A look for Ctrl-C now and then, from a run on the thread of Python, which says how far it is.
 pub struct Signals {
     steps: AtomicUsize,
     looked: Mutex<Instant>,
     raised: Mutex<Option<PyErr>>,
-}
-
-impl Default for Signals {
-    fn default() -> Self {
-        let looked = Mutex::new(Instant::now());
-        Self { steps: AtomicUsize::new(0), looked, raised: Mutex::new(None) }
-    }
+    /// What is called with the thousandths of the time that are done.
+    progress: Option<Py<PyAny>>,
+    /// The span of the run.
+    span: [f64; 2],
 }
 
 impl Signals {
     /// Steps between two looks at the clock, which take longer than a short step.
     const STEPS: usize = 32;
 
-    /// Whether Ctrl-C was pressed. It is asked after every step.
-    pub fn stop(&self) -> bool {
+    /// For a run over a span, of which `progress` is told.
+    pub fn new(progress: Option<Py<PyAny>>, span: [f64; 2]) -> Self {
+        let looked = Mutex::new(Instant::now());
+        Self { steps: AtomicUsize::new(0), looked, raised: Mutex::new(None), progress, span }
+    }
+
+    /// Whether Ctrl-C was pressed, or `progress` has failed. It is asked after every step, with the
+    /// time that the run has reached.
+    pub fn stop(&self, s: f64) -> bool {
         if !self.steps.fetch_add(1, Ordering::Relaxed).is_multiple_of(Self::STEPS) {
             return false;
         }
         let mut looked = lock(&self.looked);
         if looked.elapsed() >= PAUSE {
             *looked = Instant::now();
-            *lock(&self.raised) = Python::attach(|py| py.check_signals().err());
+            let looked = Python::attach(|py| py.check_signals().and_then(|()| self.tell(py, s)));
+            *lock(&self.raised) = looked.err();
         }
         lock(&self.raised).is_some()
     }
 
-    /// The exception of Ctrl-C, if it was pressed.
-    pub fn raised(self) -> PyResult<()> {
-        let raised = self.raised.into_inner().unwrap_or_else(PoisonError::into_inner);
-        raised.map_or(Ok(()), Err)
+    fn tell(&self, py: Python<'_>, s: f64) -> PyResult<()> {
+        /// Steps of a whole run.
+        const STEPS: u32 = 1000;
+        let Some(progress) = &self.progress else { return Ok(()) };
+        let [start, end] = self.span;
+        // An infinite span is never done.
+        let part = f64::from(STEPS) * (s - start) / (end - start);
+        let done = (1..=STEPS).take_while(|&step| f64::from(step) <= part).count();
+        progress.call1(py, (done, STEPS)).map(drop)
+    }
+
+    /// The exception of Ctrl-C or of `progress`, if there is one.
+    pub fn raised(&self) -> Option<PyErr> {
+        lock(&self.raised).take()
     }
 }
 

@@ -1,5 +1,6 @@
 //! What computes collisions.
 
+use std::ffi::OsString;
 use std::fmt::Display;
 
 use pyo3::prelude::*;
@@ -92,6 +93,12 @@ pub fn document(
     stickslip_model::document::new(schema, result, engine, (None, statistics))
         .map(|document| Value::Object(document).to_string())
         .map_err(failed)
+}
+
+/// Carries out a command line of the program, which begins with its name: the exit code.
+#[pyfunction]
+pub fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| stickslip_cli::program(arguments))
 }
 
 /// The version of the package.

@@ -24,7 +24,8 @@ type Parameter = (String, f64, Option<(f64, f64)>);
 /// The mode, the time and the state at the start, where they are not those of the system.
 type Start = (Option<usize>, Option<f64>, Option<Vec<f64>>);
 
-/// Method, tolerances, longest and first step, and the largest number of switches.
+/// Method, tolerances (also those of components, if these have their own), longest and first step,
+/// and the largest numbers of switches and steps.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Settings {
@@ -34,6 +35,8 @@ pub struct Settings {
     max_step: f64,
     first_step: Option<f64>,
     max_switches: usize,
+    max_steps: usize,
+    pub tolerances: Vec<(f64, f64)>,
 }
 
 impl Settings {
@@ -46,6 +49,7 @@ impl Settings {
             max_step: self.max_step,
             first_step: self.first_step,
             max_switches: self.max_switches,
+            max_steps: self.max_steps,
             ..Options::default()
         };
         options.validate().map_err(bad_input)?;
@@ -183,6 +187,8 @@ impl FormulaSystem {
     }
 
     /// Runs the system, and returns what it found as columns.
+    #[pyo3(signature = (parameters, start, end, settings, times, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn run<'py>(
         &self,
         py: Python<'py>,
@@ -191,24 +197,28 @@ impl FormulaSystem {
         end: Option<f64>,
         settings: Settings,
         times: Option<Vec<f64>>,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let (method, options) = settings.checked()?;
-        let signals = Signals::default();
-        let stops = || signals.stop();
+        let runnable = runnable.with_tolerances(settings.tolerances).map_err(bad_input)?;
+        let signals = Signals::new(progress, [runnable.start().s, end]);
+        let stops = |s| signals.stop(s);
         let found = py.detach(|| runnable.record_unless(&stops, method, end, &options));
         let (found, interrupted) = match (found, signals.raised()) {
             (Ok(found), interrupted) => (found, interrupted),
-            (Err(_), Err(interrupted)) => return Err(interrupted),
-            (Err(error), Ok(())) => return Err(failed(self.system.explained(&error))),
+            (Err(_), Some(interrupted)) => return Err(interrupted),
+            (Err(error), None) => return Err(failed(self.system.explained(&error))),
         };
         let columns = columns(py, &self.system, &found, times)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
         let work = found.run.statistics.field + stages * found.steps().len() + 1;
         columns.set_item("nfev", work)?;
-        interrupted.map_err(|error| keeping(py, error, || Ok(columns.clone().into_any())))?;
-        Ok(columns)
+        match interrupted {
+            Some(error) => Err(keeping(py, error, || Ok(columns.clone().into_any()))),
+            None => Ok(columns),
+        }
     }
 
     /// The study of how accurate a run is. `name` is that of the system in titles.

@@ -28,6 +28,7 @@ use stickslip_solver::dynamic::{
 use stickslip_solver::sliding::{Refusal, SlidingMode};
 use stickslip_solver::{Dop853, Dopri5, EmbeddedPair, Options, Outcome, RunError, Statistics};
 
+use crate::background::Signals;
 use crate::failure::bad_input;
 use arguments::{Output, Settings, Start, StartArguments, SystemArguments};
 use ending::Ending;
@@ -72,6 +73,8 @@ impl Drop for Level {
 ///
 /// The interpreter's lock is released if all functions are compiled.
 #[pyfunction]
+#[pyo3(signature = (system, args, start, end, settings, output, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "they are those of Python")]
 pub fn run_hybrid<'py>(
     py: Python<'py>,
     system: SystemArguments,
@@ -80,20 +83,24 @@ pub fn run_hybrid<'py>(
     end: f64,
     settings: Settings,
     output: Output<'py>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let _level = Level::enter()?;
     let (pair, options) = settings.checked()?;
     let parts = Arc::new(Parts::new(system)?);
     let caller = Caller::new(args.iter().map(Bound::unbind).collect());
-    let system = Sliding::new(System::new(parts, caller, Arc::default(), None));
+    let system = System::new(parts, caller, Arc::default(), None);
+    let system = Sliding::new(system.with_tolerances(settings.tolerances));
     let (times, dense) = output.owned();
-    let job = Job { system, pair, options, start: start.owned(), end };
+    let start = start.owned();
+    let signals = Signals::new(progress, [start.s, end]);
+    let job = Job { system, pair, options, start, end };
     // Dense output costs three evaluations a step, so it is made only if anybody reads it.
     if dense || times.as_ref().is_none_or(|times| !times.is_empty()) {
-        let record = Record::<true>::new(&job, times, dense);
+        let record = Record::<true>::new(&job, times, dense, signals);
         finish(py, job, record)
     } else {
-        let record = Record::<false>::new(&job, times, dense);
+        let record = Record::<false>::new(&job, times, dense, signals);
         finish(py, job, record)
     }
 }

@@ -5,9 +5,9 @@
 //! Python functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
-//! `tables`, `studies` (results), `hybrid`, `formulas`, `many`, `tape` (systems of one's own),
-//! `families` (and what they depend on), `style` (colours), `engines`, `parallel` and `failure`
-//! (what they share).
+//! `tables`, `studies` (results), `hybrid`, `formulas`, `orbits`, `many`, `tape` (systems of one's
+//! own), `families` (and what they depend on), `style` (colours), `engines`, `parallel` and
+//! `failure` (what they share).
 
 mod arrays;
 mod background;
@@ -20,6 +20,7 @@ mod formulas;
 mod hybrid;
 mod impacts;
 mod many;
+mod orbits;
 mod parallel;
 mod planes;
 mod stacks;
@@ -47,7 +48,8 @@ mod _native {
     use super::collision::Collision;
     #[pymodule_export]
     use super::engines::{
-        explorer, has_fused_products, laws, processor_has_fused_products, restitution, version,
+        explorer, has_fused_products, laws, processor_has_fused_products, program, restitution,
+        version,
     };
     #[pymodule_export]
     use super::failure::ComputationError;
@@ -63,6 +65,8 @@ mod _native {
     use super::impacts::{BodyPair, homogeneous_mass};
     #[pymodule_export]
     use super::many::run_many;
+    #[pymodule_export]
+    use super::orbits::{OrbitSystem, branch_picture};
     #[pymodule_export]
     use super::planes::{Atlas, gaining_lines};
     #[pymodule_export]

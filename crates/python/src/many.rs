@@ -31,6 +31,7 @@ pub fn run_many<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (method, options) = settings.checked()?;
+    let tolerances = settings.tolerances;
     let compiled = system.compiled()?.clone();
     let rows_of = |array: &PyReadonlyArray2<'_, f64>| -> Vec<Vec<f64>> {
         array.as_array().rows().into_iter().map(|row| row.to_vec()).collect()
@@ -44,6 +45,8 @@ pub fn run_many<'py>(
         let state = states.as_ref().map(|states| states[index].as_slice());
         let runnable =
             runnable.starting(start.0, start.1, state).map_err(|error| error.to_string())?;
+        let runnable =
+            runnable.with_tolerances(tolerances.clone()).map_err(|error| error.to_string())?;
         let (from, end) = (runnable.start().s, end.unwrap_or(runnable.end()));
         if end.is_nan() || end <= from || end.is_infinite() && !ends_itself {
             return Err(format!("the run ends at {end}; expected an end after {from}"));

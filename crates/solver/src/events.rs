@@ -23,14 +23,13 @@
 //! | `isolate` | the decision about a guard, from its monotone pieces |
 //! | `path` | bounds for the state along a step, for the guards of readable systems |
 //! | `along_step` | a guard as a function along a step, and its rounding |
-//! | `aside` | places beside one where a guard has no value |
+//! | `sidestep` | places beside one where a guard has no value |
 //! | `locate` | the place of a switch, by steps of the method |
 //! | `notices` | touches and poles, until the step is accepted |
 //! | `arrival` | guards that are zero where a step must end, and clocks |
 
 pub(crate) mod along_step;
 pub(crate) mod arrival;
-pub(crate) mod aside;
 mod by_bounds;
 mod doubt;
 mod event;
@@ -44,6 +43,7 @@ pub(crate) mod one_guard;
 mod path;
 pub(crate) mod phase;
 pub(crate) mod quick;
+pub(crate) mod sidestep;
 pub(crate) mod status;
 
 pub(crate) use along_step::{dense_output, repeated_step};

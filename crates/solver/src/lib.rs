@@ -176,6 +176,8 @@ pub use runs::{
     Closures, Recorder, Sample, Samples, Weighted, integrate, run, run_backwards, run_with,
 };
 pub use stickslip_number::{Enclosure, GivenValue, Interval, InvalidValue, Number};
+// What appears in signatures: states, and numbers that know their rates.
+pub use {nalgebra, num_dual::Dual64};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -132,7 +132,7 @@ where
     M: Method,
     S: DynamicSystem,
 {
-    on_fixed_states!(system, start, |filled, from, n| margins(method, &filled, from, end, options));
+    on_fixed_states!(system, start, |padded, from, n| margins(method, &padded, from, end, options));
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     free::margins::<M, _>(&system, (start.mode, start.s, &from), end, options)
 }
@@ -176,8 +176,8 @@ where
     M: Method,
     S: DynamicSystem,
 {
-    on_fixed_states!(system, start, |filled, from, n| {
-        self::margin(method, &filled, from, end, options, margin)
+    on_fixed_states!(system, start, |padded, from, n| {
+        self::margin(method, &padded, from, end, options, margin)
     });
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     near_miss::<M, _>(&system, (start.mode, start.s, &from), end, options, margin)
@@ -236,8 +236,8 @@ where
     M: Method,
     S: DynamicSystem,
 {
-    on_fixed_states!(system, start, |filled, from, n| {
-        let followed = follow(method, &filled, from, end, options, exits)?;
+    on_fixed_states!(system, start, |padded, from, n| {
+        let followed = follow(method, &padded, from, end, options, exits)?;
         Ok(followed.map(|Followed { exits, run }| {
             let Run { outcome, s, mode, state, decided, statistics } = run;
             let state = state.as_slice()[..n].to_vec();

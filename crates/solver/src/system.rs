@@ -380,7 +380,7 @@ impl<S: DynamicSystem> System for Free<'_, S> {
         // Dispatched at run time, so that it is compiled once for each method.
         let mut field =
             |s: f64, y: &Vec<f64>, slope: &mut Vec<f64>| self.0.field(mode, s, y, slope);
-        step.take_buffers::<M>(&mut field, trial);
+        step.take_buffers::<M>(&mut field, trial, self.0.tolerances());
     }
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut Vec<f64>) -> S::Mode {
         self.0.transition(mode, guard, s, y)

@@ -21,6 +21,10 @@ pub const SWITCHES: &str = "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2";
 pub const MOST_SWITCHES: usize = 8;
 /// The end of the axis of stiffness in Figures 3 and 4.
 pub const MOST_STIFFNESS: f64 = 20.0;
+/// The largest velocities in Figure 2, in m/s.
+pub const MOST_VELOCITY_M_PER_S: f64 = 200.0;
+/// The end of the axis of ε_t in Figure 2.
+pub const LEAST_EPS_T_2: f64 = -0.6;
 /// The largest g_t/g_n in Figure 3.
 pub const MOST_RATIO_3: f64 = 3.5;
 /// The largest g_t/g_n in Figure 4.

@@ -7,6 +7,7 @@
 //! parameters; a [`DynamicFamily`] is the same for a dimension that is known at run time.
 //!
 //! - [`trace`] finds the boundaries in a [`Window`] and follows them from vertex to vertex.
+//! - [`trace_by_margins`] does the same without following labels.
 //! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
 //!   lies.
 //! - [`verify`] compares the labels of the regions with runs at random points.
@@ -157,6 +158,7 @@ pub use tracing::branch::Branch;
 pub use tracing::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;
 pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
+pub use tracing::margins::trace_by_margins;
 pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::seed::Seed;

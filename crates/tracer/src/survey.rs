@@ -6,7 +6,10 @@ use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::TraceOptions;
 use crate::regions::finding::SubdivisionError;
+use crate::regions::verify::report::VerifyError;
 use crate::tracing::extrema::Extremum;
+use crate::tracing::margins::Lines;
+use crate::tracing::network::NetworkOf;
 use crate::tracing::tracer::Tracer;
 use crate::tracing::tracer::state::State;
 use crate::watch::Watch;
@@ -86,6 +89,12 @@ impl<T> Survey<T> {
 /// The atlas of a draft.
 pub type DraftedOf<D> = Atlas<<D as Draft>::Label, <D as Draft>::Margin>;
 
+/// An atlas that was traced by margins, with their zero sets.
+type ByMargins<'f, 'w, D> = (DraftedOf<D>, Lines<'f, 'w, <D as Draft>::Family>);
+
+/// An atlas, with the zero sets if it was traced by margins.
+type Found<'f, 'w, D> = (DraftedOf<D>, Option<Lines<'f, 'w, <D as Draft>::Family>>);
+
 /// Why there is no atlas of a draft.
 type DraftError<D> = AtlasError<<<D as Draft>::Family as Family>::Error>;
 
@@ -106,9 +115,10 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
     }
 }
 
-impl<E> Surveyor<'_, E> {
+impl<'w, E> Surveyor<'w, E> {
     /// Traces, subdivides and verifies a family in a window, and looks again where the verification
-    /// finds other labels, until it finds none or nothing new comes.
+    /// finds other labels, until it finds none or nothing new comes. If something is in doubt then,
+    /// the window is traced by its margins alone, which counts if it leaves no doubt.
     ///
     /// What cannot be resolved is part of the result: [`Atlas::unresolved`] and
     /// [`Atlas::verification`] say what and where, and the regions that it touches are in doubt.
@@ -128,7 +138,7 @@ impl<E> Surveyor<'_, E> {
     {
         let mut tracer = Tracer::new(family, window, &self.options.trace)?;
         tracer.require_few(&self.executor, &self.watch)?;
-        self.finish(&Own(family), &mut tracer, Survey::BEGINNING)
+        Ok(self.finish(&Own(family), &mut tracer, Survey::BEGINNING)?.0)
     }
 
     /// As [`Self::atlas`], for an atlas with other labels and margins than the family's, and other
@@ -150,8 +160,12 @@ impl<E> Surveyor<'_, E> {
             let surveyor = Surveyor { options: AtlasOptions { trace, ..self.options }, ..*self };
             let mut tracer = Tracer::new(draft.family(), window, &trace)?;
             tracer.require_few(&surveyor.executor, &surveyor.watch)?;
-            let atlas = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
-            Ok((atlas, tracer.extrema()?))
+            let (atlas, lines) = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
+            let extrema = match lines {
+                Some(lines) => lines.extrema()?,
+                None => tracer.extrema()?,
+            };
+            Ok((atlas, extrema))
         };
         let first: Result<_, DraftError<D>> = traced(self.options.trace);
         let first = first?;
@@ -187,49 +201,116 @@ impl<E> Surveyor<'_, E> {
     {
         let Some(unfinished) = atlas.unfinished.take() else { return Ok(atlas) };
         let (round, window) = (atlas.rounds, *atlas.plane.window());
-        let result = unfinished.brackets.is_some().then_some(atlas);
+        let finished = unfinished.surveyed;
+        let result = (finished || unfinished.brackets.is_some()).then_some(atlas);
         let mut tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
-        self.finish(&Own(family), &mut tracer, Survey { result, round, finished: false })
+        Ok(self.finish(&Own(family), &mut tracer, Survey { result, round, finished })?.0)
     }
 
     /// The atlas of a tracer, which may have begun: the tracer explores, the regions are verified,
     /// and the tracer looks again where this finds that something is missing, as long as curves are
     /// found and this comes closer: where no margins tell what is missing, each look only leaves
     /// more places.
-    fn finish<D: Draft>(
+    ///
+    /// If something is in doubt then, the window is traced by margins. If nothing is in doubt after
+    /// that, this is the result, with the lines of the margins.
+    fn finish<'f, D: Draft>(
         &self,
-        draft: &D,
+        draft: &'f D,
         tracer: &mut Tracer<'_, D::Family>,
         begun: Survey<DraftedOf<D>>,
-    ) -> Result<DraftedOf<D>, DraftError<D>>
+    ) -> Result<Found<'f, 'w, D>, DraftError<D>>
     where
         E: Executor<D::Family>,
     {
-        let Survey { result, round, finished } = self.survey(draft, tracer, begun)?;
+        let begun = if begun.finished { begun } else { self.survey(draft, tracer, begun)? };
+        let Survey { result, round, finished } = begun;
         let mut atlas = match result {
             Some(atlas) => atlas,
-            None => self.unverified(draft, tracer, round)?.0,
+            None => self.unverified(draft, tracer.network(), round)?.0,
         };
-        if !finished {
-            let State { network, uncertainties, suspects, probed, stage, brackets } =
-                tracer.state();
-            let network = draft.drawn(network);
-            atlas.unfinished =
-                Some(Box::new(State { network, uncertainties, suspects, probed, stage, brackets }));
+        let mut surveyed = false;
+        if finished && !atlas.agrees() {
+            match self.by_margins(draft, &tracer.window()) {
+                Ok(Some((other, lines))) if other.agrees() => return Ok((other, Some(lines))),
+                // Runs may fail where the first way had nothing to look for.
+                Ok(Some(_)) | Err(_) => {}
+                Ok(None) => surveyed = true,
+            }
         }
-        Ok(atlas)
+        if surveyed || !finished {
+            let state = tracer.state();
+            let State { network, uncertainties, suspects, probed, stage, brackets, .. } = state;
+            let network = draft.drawn(network);
+            atlas.unfinished = Some(Box::new(State {
+                network,
+                uncertainties,
+                suspects,
+                probed,
+                stage,
+                brackets,
+                surveyed,
+            }));
+        }
+        Ok((atlas, None))
     }
 
-    /// The regions of what a tracer has found, and the options that fit them.
+    /// The atlas of the zero sets of margins, which are searched for again where the verification
+    /// finds that one is missing. `None` if the watch cancels.
+    fn by_margins<'f, D: Draft>(
+        &self,
+        draft: &'f D,
+        window: &Window,
+    ) -> Result<Option<ByMargins<'f, 'w, D>>, DraftError<D>>
+    where
+        E: Executor<D::Family>,
+    {
+        let mut lines = Lines::new(draft.family(), window, &self.options.trace, self.watch)?;
+        if !lines.explore(&self.executor)? {
+            return Ok(None);
+        }
+        let mut round = 1;
+        loop {
+            let (mut atlas, options) = self.unverified(draft, lines.network()?, round)?;
+            if !self.verify(draft, &mut atlas, &options)? {
+                return Ok(None);
+            }
+            let brackets = atlas.verification.brackets();
+            if brackets.is_empty() || round >= self.options.rounds {
+                return Ok(Some((atlas, lines)));
+            }
+            match lines.look(&brackets)? {
+                None => return Ok(None),
+                Some(false) => return Ok(Some((atlas, lines))),
+                Some(true) => round += 1,
+            }
+        }
+    }
+
+    /// The regions of what was found, and the options that fit them.
     fn unverified<D: Draft>(
         &self,
         draft: &D,
-        tracer: &Tracer<'_, D::Family>,
+        network: NetworkOf<D::Family>,
         round: usize,
     ) -> Result<(DraftedOf<D>, AtlasOptions), SubdivisionError> {
-        let network = draft.drawn(tracer.network());
+        let network = draft.drawn(network);
         let options = draft.fitted(&self.options, &network.curves);
         Ok((Atlas::unverified(network, &options, round)?, options))
+    }
+
+    /// Verifies an atlas. Returns `false` if the watch cancels.
+    fn verify<D: Draft>(
+        &self,
+        draft: &D,
+        atlas: &mut DraftedOf<D>,
+        options: &AtlasOptions,
+    ) -> Result<bool, VerifyError>
+    where
+        E: Executor<D::Family>,
+    {
+        let labels = |portion: &[Point]| draft.checks(&self.executor, portion);
+        atlas.verify(options, |points: &[Point]| self.watch.in_portions(points, labels))
     }
 
     /// The rounds themselves.
@@ -258,10 +339,8 @@ impl<E> Surveyor<'_, E> {
                 }
                 round += 1;
             }
-            let (mut atlas, options) = self.unverified(draft, tracer, round)?;
-            let labels = |portion: &[Point]| draft.checks(&self.executor, portion);
-            let labels = |points: &[Point]| self.watch.in_portions(points, labels);
-            if !atlas.verify(&options, labels)? {
+            let (mut atlas, options) = self.unverified(draft, tracer.network(), round)?;
+            if !self.verify(draft, &mut atlas, &options)? {
                 return Ok(Survey { result: None, round, finished: false });
             }
             let brackets = atlas.verification.brackets();

@@ -18,6 +18,10 @@
 //! 5. `cut` takes the part inside the window, `naming` names the vertices, and `extrema` finds
 //!    where curves turn back in a coordinate.
 //!
+//! A window in which something is in doubt after this is traced again in another way, by `margins`
+//! alone: zero sets are followed without labels and divided where they meet, and one run on each
+//! side of every part says whether it is a boundary.
+//!
 //! In reading order:
 //!
 //! - `tracer`: a search, and what it has found
@@ -33,6 +37,7 @@
 //! - `naming`: the kinds of vertices
 //! - `special_points`: the names of points at which two conditions hold together
 //! - `extrema`: where boundaries are extremal in a coordinate
+//! - `margins`: tracing by margins alone
 //! - `follow`: one boundary, with monitors
 
 pub mod branch;
@@ -43,6 +48,7 @@ pub mod end;
 pub mod extrema;
 mod fit;
 pub mod follow;
+pub mod margins;
 mod naming;
 pub mod network;
 pub mod runs;

@@ -36,11 +36,11 @@ impl Watch<'static> {
 
 impl<'a> Watch<'a> {
     /// The number of points between two calls of `cancelled`.
-    const PORTION: usize = 256;
+    const PORTION: usize = 32;
 
     /// The same watch, which cancels when `cancelled` returns `true`; from then on it should always
     /// do so. It is called between tasks, which are short: one search along an edge of the grid,
-    /// around a vertex, or some hundred runs.
+    /// around a vertex, or some tens of runs.
     #[must_use]
     pub fn cancelled_by(self, cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { cancelled, ..self }

@@ -31,7 +31,7 @@ pub struct ReproduceArguments {
     #[arg(required_unless_present = "statement", conflicts_with = "statement")]
     pub out: Option<PathBuf>,
 
-    /// Numbers of statements of the paper, from 1 to 24, that are tested and printed instead
+    /// Numbers of statements of the paper, from 1 to 25, that are tested and printed instead
     #[arg(long, value_name = "N", help_heading = "Audit", num_args = 1..)]
     #[arg(allow_negative_numbers = true)]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(COUNT)))]

@@ -181,9 +181,10 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
     let options = plane.atlas_options(*tolerance)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
+    let family = plane.family_of_atlas(arguments.plane.max_events);
     let atlas = threads.with_steps(|report| {
         let surveyor = Surveyor { options, executor: InParallel, watch: Watch::from(report) };
-        surveyor.atlas(&plane.family, &plane.window)
+        surveyor.atlas(&family, &plane.window)
     })?;
     let atlas = atlas.map_err(|error| Failure::Family(error.to_string()))?;
     let document = stickslip_tracer::Document::of_runs(&atlas, &options, &plane.names);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_expression::{Runnable, System, SystemFamily};
+use stickslip_expression::{Accumulation, Runnable, System, SystemFamily};
 use stickslip_files::input::{number, source};
 use stickslip_plane::Range;
 use stickslip_solver::Options;
@@ -10,6 +10,7 @@ use stickslip_tracer::{AtlasOptions, Point, RunNames, Window};
 
 use super::method::{atol, rtol};
 use crate::error::Failure;
+use crate::output::console::say;
 
 /// The largest text of a system, in bytes.
 const MOST_TEXT: u64 = 100_000_000;
@@ -37,7 +38,8 @@ pub struct PlaneArguments {
     pub given: GivenArguments,
 
     /// Events after which a run is not told apart from others; where events accumulate, there are
-    /// boundaries without end unless this is a small number [default: 10000000]
+    /// boundaries without end unless this is a small number [default: 10000000; for an atlas, 4 to
+    /// 12 if events accumulate in the window]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     #[arg(allow_hyphen_values = true, requires = "system", help_heading = "System of your own")]
     pub max_events: Option<u32>,
@@ -91,7 +93,7 @@ pub fn read(path: &Path) -> Result<(System, String), Failure> {
 }
 
 /// The name of a system in titles: that of its file.
-fn title(path: &Path) -> String {
+pub fn title(path: &Path) -> String {
     let name = source::shown(path).file_stem();
     name.map_or_else(String::new, |it| it.to_string_lossy().into_owned())
 }
@@ -100,7 +102,7 @@ fn title(path: &Path) -> String {
 ///
 /// # Errors
 /// [`Failure::Usage`]: there is no such parameter.
-fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
+pub fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     let mut values = system.values();
     for (name, value) in set {
         values[place(system, "--set", name)?] = *value;
@@ -228,6 +230,22 @@ impl SystemPlane {
         }))
     }
 
+    /// The family of an atlas. If events accumulate in some runs, and `most` does not say how many
+    /// count, so few count that there are boundaries with an end; standard error says so.
+    pub fn family_of_atlas(&self, most: Option<u32>) -> SystemFamily {
+        let family = self.family.clone();
+        match self.family.accumulation(&self.window).filter(|_| most.is_none()) {
+            Some(Accumulation { events, runs, of }) => {
+                say(format_args!(
+                    "events accumulate in {runs} of {of} runs on a grid: runs are told apart up to \
+                     event {events}; --max-events chooses another number"
+                ));
+                family.up_to(events)
+            }
+            None => family,
+        }
+    }
+
     /// The options of an atlas.
     ///
     /// # Errors
@@ -259,7 +277,7 @@ pub fn time(text: &str) -> Result<f64, String> {
 }
 
 /// Reads `name=lo:hi`.
-fn axis(text: &str) -> Result<Axis, String> {
+pub fn axis(text: &str) -> Result<Axis, String> {
     const EXPECTED: &str = "expected NAME=LO:HI with LO below HI, such as mu=0.1:0.5";
     let (name, range) = text.split_once('=').ok_or(EXPECTED)?;
     let (low, high) = range.split_once(':').ok_or(EXPECTED)?;

@@ -10,7 +10,7 @@ use crate::{decimal, reference, stickslip};
 
 /// All statements, as they are printed.
 fn audit(options: &str) -> String {
-    let numbers: Vec<_> = (1..=24).map(|number: u8| number.to_string()).collect();
+    let numbers: Vec<_> = (1..=25).map(|number: u8| number.to_string()).collect();
     let ran =
         stickslip(&format!("reproduce --statement {} --format json {options}", numbers.join(" ")));
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
@@ -61,8 +61,9 @@ fn every_statement_has_its_verdict() {
     let expected = [
         HOLDS, FALSE, CONDITION, HOLDS, CONDITION, CONDITION, FALSE, HOLDS, CONDITION, FALSE,
         FALSE, FALSE, HOLDS, CONDITION, HOLDS, FALSE, FALSE, FALSE, FALSE, HOLDS, CONDITION,
-        CONDITION, HOLDS, CONDITION,
+        CONDITION, HOLDS, CONDITION, CONDITION,
     ];
+    assert_eq!(RESET.len(), expected.len());
     for (statement, (number, expected)) in RESET.iter().zip((1..).zip(expected)) {
         assert_eq!((statement["number"].as_u64(), verdict(statement)), (Some(number), expected));
         assert_eq!(statement["condition"].is_string(), expected == CONDITION, "{number}");
@@ -165,6 +166,12 @@ fn bounds_and_courses() {
     close(19, "time of the first minimum of the velocity at 100", 0.95, 5e-3);
     close(19, "time of the first minimum of the velocity at 350", 0.88, 5e-3);
     close(22, "ψ of the largest elongation at κ = 18", 1.0, 1e-6);
+    // Of 200 001 impacts with g_n from 179 to 181 m/s, the smallest ε_t is -0.600005 at g_t =
+    // 0.041686 m/s, and -0.599996 at 0.041687 m/s.
+    close(25, "largest g_t at which ε_t is -0.6, in m/s", 0.041_686_5, 5e-7);
+    close(25, "g_n there, in m/s", 179.9, 1e-3);
+    close(25, "smallest ε_t at g_t = 0.25 m/s", -0.126_23, 1e-5);
+    count(25, "rows of equal cells up to 200 m/s of which the lowest one shows it", 2399);
 }
 
 /// With a spring that is not reset, statements about friction alone, the number of parameters, the
@@ -236,10 +243,10 @@ fn as_markdown() {
 
 #[test]
 fn a_statement_that_does_not_exist() {
-    for number in ["0", "25", "256", "-1", "seven"] {
+    for number in ["0", "26", "256", "-1", "seven"] {
         let ran = stickslip(&format!("reproduce --statement {number}"));
         assert_eq!((ran.code, ran.stdout.as_str()), (2, ""), "{number}");
-        let named = ran.stderr.contains("1..=24") || number == "seven";
+        let named = ran.stderr.contains("1..=25") || number == "seven";
         assert!(named && ran.stderr.contains(number), "{}", ran.stderr);
     }
     let ran = stickslip("reproduce");

@@ -29,6 +29,7 @@ mod map_failures;
 mod map_interrupted;
 mod notebooks_data;
 mod option_tables;
+mod orbits;
 mod particle_codes;
 mod parts;
 mod parts_failures;

@@ -269,20 +269,3 @@ fn a_dropped_column_and_a_changed_number_are_noticed() {
     assert!(compare("up to 1.5.", "up to 1.6.", 1e-9).is_err());
     assert!(compare("[[1.0,2.0]]", "[[1.0,2.1]]", 1e-9).is_err());
 }
-
-#[test]
-fn notebooks_have_no_outputs() {
-    let folder = repository().join("notebooks");
-    let notebooks: Vec<_> =
-        names(&folder).into_iter().filter(|name| extension(name) == "ipynb").collect();
-    assert_eq!(notebooks.len(), 4);
-    for name in notebooks {
-        let notebook: serde_json::Value =
-            serde_json::from_str(&read(&folder.join(&name))).expect("JSON");
-        for cell in notebook["cells"].as_array().expect("cells") {
-            if cell["cell_type"] == "code" {
-                assert_eq!(cell["outputs"], serde_json::json!([]), "{name}");
-            }
-        }
-    }
-}

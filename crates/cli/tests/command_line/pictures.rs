@@ -1,7 +1,7 @@
 //! Pictures exist, are valid, and are the same every time.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Output};
 
 use assert_cmd::cargo::cargo_bin;
 use roxmltree::{Document, Node};
@@ -297,6 +297,17 @@ fn a_collision_with_too_many_steps_for_a_picture_says_so() {
     assert_eq!(workspace.names(), [""; 0]);
 }
 
+/// Runs a command line under a limit that a shell sets.
+#[cfg(unix)]
+fn limited(workspace: &Workspace, limit: &str, line: &str) -> Output {
+    Command::new("sh")
+        .current_dir(workspace.path("."))
+        .args(["-c", &format!("{limit}; exec \"$0\" {line}")])
+        .arg(cargo_bin!("stickslip"))
+        .output()
+        .expect("a shell")
+}
+
 /// A limit on the size of files stands for a disk that is full when the picture is written.
 #[cfg(unix)]
 #[test]
@@ -311,13 +322,7 @@ fn a_full_disk_leaves_nothing() {
     ] {
         // The limit, in units of 1024 or 512 bytes, is below the size of any picture. The signal
         // that would kill the process is ignored.
-        let script = format!("trap '' XFSZ; ulimit -f 4; exec \"$0\" {line}");
-        let output = Command::new("sh")
-            .current_dir(workspace.path("."))
-            .args(["-c", &script])
-            .arg(cargo_bin!("stickslip"))
-            .output()
-            .expect("a shell");
+        let output = limited(&workspace, "trap '' XFSZ; ulimit -f 4", line);
         let stderr = String::from_utf8(output.stderr).expect("UTF-8");
         assert_eq!(output.status.code(), Some(1), "{line}: {stderr}");
         assert!(stderr.contains("cannot be written"), "{stderr}");
@@ -350,13 +355,8 @@ fn too_many_open_files_are_named() {
     let workspace = Workspace::with_input("kappa,psi\n18,1\n");
     let mut named = 0;
     for limit in 4..12 {
-        let script = format!("ulimit -n {limit}; exec \"$0\" collide --batch in.csv --out o");
-        let output = Command::new("sh")
-            .current_dir(workspace.path("."))
-            .args(["-c", &script])
-            .arg(cargo_bin!("stickslip"))
-            .output()
-            .expect("a shell");
+        let line = "collide --batch in.csv --out o";
+        let output = limited(&workspace, &format!("ulimit -n {limit}"), line);
         let stderr = String::from_utf8(output.stderr).expect("UTF-8");
         assert!(!stderr.contains("uncategorized"), "{stderr}");
         named += usize::from(stderr.contains("o: cannot be written: Too many open files"));

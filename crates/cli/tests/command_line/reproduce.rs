@@ -166,6 +166,55 @@ fn the_page_is_complete_and_needs_nothing_else() {
     assert_eq!(ids.len(), count);
 }
 
+/// A picture and the contents come first, each figure above what was found of it, and panels side
+/// by side are parts that a narrow page shows below each other.
+#[test]
+fn the_page_is_in_the_order_of_reading() {
+    let text = RUN.read("out/index.html");
+    let page = page(&text);
+    let tags = |node: Node<'_, '_>| -> Vec<String> {
+        let children = node.children().filter(Node::is_element);
+        children.map(|child| child.tag_name().name().to_owned()).collect()
+    };
+    let find = |name: &str| page.descendants().find(|node| node.has_tag_name(name));
+    let header = find("header").expect("a header");
+    assert_eq!(tags(header), ["h1", "p", "p", "a", "nav"]);
+    let target = |node: Node<'_, '_>| node.attribute("href").expect("a link").to_owned();
+    let inside = |node: Node<'_, '_>, name: &str| -> Vec<String> {
+        node.descendants().filter(|node| node.has_tag_name(name)).map(target).collect()
+    };
+    assert_eq!(inside(header, "use"), ["#picture-boundaries"]);
+    let sections = page.descendants().filter(|node| node.has_tag_name("section"));
+    let (mut contents, mut stacked) = (vec!["#boundaries".to_owned()], 0);
+    for section in sections {
+        contents.push(format!("#{}", section.attribute("id").expect("a name")));
+        let tags = tags(section);
+        let figure = tags.iter().position(|tag| tag == "figure");
+        assert!(figure.is_none_or(|place| place == 1 && tags[0] == "h2"), "{tags:?}");
+        for part in section.descendants().filter(|node| node.attribute("class") == Some("part")) {
+            let view: Vec<f64> = part
+                .attribute("viewBox")
+                .expect("a view")
+                .split(' ')
+                .map(|side| side.parse().expect("a number"))
+                .collect();
+            let whole = part.parent().and_then(|figure| {
+                figure.descendants().find(|node| node.has_attribute("font-family"))
+            });
+            let side = |name: &str| -> f64 {
+                let side = whole.and_then(|whole| whole.attribute(name)).expect("a side");
+                side.parse().expect("a number")
+            };
+            assert!(view[0] >= 0.0 && view[0] + view[2] <= side("width") + 1e-9, "{view:?}");
+            assert!(view[1] > 0.0 && view[1] + view[3] <= side("height") + 1e-9, "{view:?}");
+            stacked += 1;
+        }
+    }
+    assert_eq!(inside(header, "a"), contents);
+    // Two panels of Figures 2, 3 and 4, one of Figure 1, and Figure 5 with its legends.
+    assert_eq!(stacked, 1 + 3 * 2 + 2 * 3);
+}
+
 #[test]
 fn all_forms_say_the_same() {
     let report: serde_json::Value =
@@ -222,7 +271,7 @@ fn all_forms_say_the_same() {
             }
         }
     }
-    assert_eq!((parts.len(), statements), (10, 24));
+    assert_eq!((parts.len(), statements), (10, 25));
     assert!(findings > 15, "{findings}");
 }
 

@@ -17,6 +17,7 @@ pub struct Svg {
     height: f64,
     title: String,
     body: String,
+    parts: Vec<Rectangle>,
 }
 
 /// The point of a text that is at its position.
@@ -57,7 +58,8 @@ impl Svg {
     /// An empty picture. Browsers and assistive programs show its title.
     #[must_use]
     pub fn new(width: f64, height: f64, title: &str) -> Self {
-        Self { width, height, title: markup::escaped(&markup::plain(title)), body: String::new() }
+        let title = markup::escaped(&markup::plain(title));
+        Self { width, height, title, body: String::new(), parts: Vec::new() }
     }
 
     /// The width of the picture.
@@ -72,10 +74,26 @@ impl Svg {
         self.height
     }
 
+    /// The parts that a narrow page shows below each other, each as `viewBox` has it; none if the
+    /// picture is shown as a whole.
+    #[must_use]
+    pub fn parts(&self) -> Vec<String> {
+        let view = |part: &Rectangle| {
+            let [x, y, width, height] = [part.left, part.top, part.width, part.height].map(Px);
+            format!("{x} {y} {width} {height}")
+        };
+        self.parts.iter().map(view).collect()
+    }
+
+    /// Adds a part that a narrow page shows below those before.
+    pub fn part(&mut self, at: Rectangle) {
+        self.parts.push(at);
+    }
+
     /// The picture as an SVG document.
     #[must_use]
     pub fn document(&self) -> String {
-        let Self { width, height, title, body } = self;
+        let Self { width, height, title, body, .. } = self;
         // Some viewers drop blanks at the ends of lowered and raised words without this attribute.
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{FONT}" xml:space="preserve">

@@ -33,6 +33,8 @@ const FIRST: Rectangle = Rectangle { left: 72.0, top: 92.0, width: PANEL_WIDTH, 
 const STEP: (f64, f64) = (239.0, 160.0);
 const TITLE_AT: (f64, f64) = (72.0, 22.0);
 const LEGEND_AT: (f64, f64) = (72.0, 50.0);
+/// The legend as a part of its own, on pages that show half of the columns.
+const LEGEND: Rectangle = Rectangle { left: 60.0, top: 38.0, width: 640.0, height: 26.0 };
 
 /// Draws `exhibits` row by row; all panels have the same axes.
 #[must_use]
@@ -61,7 +63,17 @@ pub fn draw(title: &str, exhibits: &[Exhibit]) -> Svg {
     let height = STEP.1 * rows - (STEP.1 - FIRST.height);
     let middle = (FIRST.left - 52.0, FIRST.top + 0.5 * height);
     svg.words(middle, Words { upwards: true, ..Words::new(FORCE, TEXT, Anchor::Middle) });
-    let below = (0.5 * (FIRST.left + WIDTH), FIRST.top + height + 36.0);
-    svg.words(below, Words::new(TIME, TEXT, Anchor::Middle));
+    // Both halves have the name of the axis.
+    let half = 0.5 * STEP.0 * COLUMNS as f64;
+    let right = FIRST.left + half - 8.0;
+    for start in [FIRST.left, FIRST.left + half] {
+        let below = (start + 0.5 * half, FIRST.top + height + 36.0);
+        svg.words(below, Words::new(TIME, TEXT, Anchor::Middle));
+    }
+    svg.part(LEGEND);
+    let top = LEGEND.top + LEGEND.height;
+    let halves = Rectangle { left: 0.0, top, width: right, height: svg.height() - top };
+    svg.part(halves);
+    svg.part(Rectangle { left: right, width: WIDTH - right, ..halves });
     svg
 }

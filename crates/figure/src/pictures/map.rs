@@ -20,6 +20,8 @@ const STEP: f64 = 512.0;
 const HEIGHT: f64 = 456.0;
 const FIRST: Rectangle = Rectangle { left: 72.0, top: 64.0, width: 358.0, height: 340.0 };
 const TITLE_AT: (f64, f64) = (72.0, 20.0);
+/// The part of the height that the title has.
+const TITLE_HEIGHT: f64 = 34.0;
 
 /// Draws `maps` from left to right; `title` holds for all of them.
 ///
@@ -35,6 +37,12 @@ pub fn draw(title: &str, maps: &[MapPanel<'_>]) -> Result<Svg, FigureError> {
     let counts = switches::counts(maps);
     for (index, map) in maps.iter().enumerate() {
         let frame = Rectangle { left: FIRST.left + step * index as f64, ..FIRST };
+        svg.part(Rectangle {
+            left: step * index as f64,
+            top: TITLE_HEIGHT,
+            width: step,
+            height: HEIGHT - TITLE_HEIGHT,
+        });
         let panel = Panel { frame, x: map.horizontal.range, y: map.vertical.range, scales: LINEAR };
         match map.values {
             Values::Restitution(values) => restitution::draw(&mut svg, map, &panel, values)?,

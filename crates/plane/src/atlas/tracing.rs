@@ -30,8 +30,9 @@ pub fn trace<'w>(
 ///
 /// The runs of the grid and of the verification are computed on the threads of the current rayon
 /// pool. If the verification finds other switches than the regions have, the tracer looks again
-/// there, in up to eight rounds. A window in which something is in doubt is traced in up to three
-/// other ways, of which the first without a doubt counts. `watch` is told of every step. If it
+/// there, in up to eight rounds. A window in which something is in doubt is traced by margins, and
+/// in both ways with up to three other options; the first result without a doubt counts. `watch` is
+/// told of every step. If it
 /// cancels, the atlas is what was found so far, and its report says so.
 ///
 /// ```

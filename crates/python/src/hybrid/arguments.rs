@@ -167,6 +167,11 @@ pub struct Settings {
     #[pyo3(item)]
     max_switches: usize,
     #[pyo3(item)]
+    max_steps: usize,
+    /// Those of components, if these have their own.
+    #[pyo3(item)]
+    pub tolerances: Vec<(f64, f64)>,
+    #[pyo3(item)]
     guard_scale: Option<f64>,
 }
 
@@ -179,10 +184,14 @@ impl Settings {
             max_step: self.max_step,
             first_step: self.first_step,
             max_switches: self.max_switches,
+            max_steps: self.max_steps,
             guard_scale: self.guard_scale,
             ..Options::default()
         };
         options.validate().map_err(bad_input)?;
+        for &(rtol, atol) in &self.tolerances {
+            Options { rtol, atol, ..options }.validate().map_err(bad_input)?;
+        }
         Ok((pair, options))
     }
 }

@@ -10,6 +10,7 @@ use stickslip_solver::dynamic::{DynamicDense, DynamicEvent, DynamicObserver};
 use stickslip_solver::sliding::{Refusal, Side};
 use stickslip_solver::{Grazing, Pole, Preempted, Rest};
 
+use crate::background::Signals;
 use crate::hybrid::segments::{Segments, fraction};
 use crate::hybrid::system::System;
 use crate::hybrid::trouble::Trouble;
@@ -44,6 +45,7 @@ pub struct Record<const SEGMENTS: bool> {
     moved: bool,
     ended: bool,
     trouble: Arc<Trouble>,
+    signals: Signals,
 }
 
 /// Modes and states at times.
@@ -69,7 +71,7 @@ struct Events {
 }
 
 impl<const SEGMENTS: bool> Record<SEGMENTS> {
-    pub fn new(job: &Job, times: Option<Vec<f64>>, dense: bool) -> Self {
+    pub fn new(job: &Job, times: Option<Vec<f64>>, dense: bool, signals: Signals) -> Self {
         Self {
             direction: if job.forwards() { 1.0 } else { -1.0 },
             end: job.end,
@@ -89,6 +91,7 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
             moved: false,
             ended: false,
             trouble: job.system.system.trouble().clone(),
+            signals,
         }
     }
 
@@ -256,7 +259,12 @@ impl<const SEGMENTS: bool> DynamicObserver<Regime> for Record<SEGMENTS> {
         self.events.truncate(kept, n);
     }
 
-    fn stops(&self) -> bool {
+    fn stops(&self, s: f64) -> bool {
+        if self.signals.stop(s)
+            && let Some(error) = self.signals.raised()
+        {
+            self.trouble.fail(error);
+        }
         self.trouble.has_failed()
     }
 

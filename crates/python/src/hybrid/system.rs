@@ -40,6 +40,8 @@ pub struct System {
     calls: (Cell<u64>, Cell<u64>),
     /// When Ctrl-C was looked for.
     looked: Cell<Instant>,
+    /// Tolerances of components, if these have their own.
+    tolerances: Vec<(f64, f64)>,
 }
 
 /// A member of a family of systems.
@@ -62,7 +64,13 @@ impl System {
             mode: Cell::new(0),
             calls: (Cell::new(0), Cell::new(0)),
             looked: Cell::new(Instant::now()),
+            tolerances: Vec::new(),
         }
+    }
+
+    /// The system with tolerances for its first components.
+    pub fn with_tolerances(self, tolerances: Vec<(f64, f64)>) -> Self {
+        Self { tolerances, ..self }
     }
 
     /// The regime at the start of a run in `mode`.
@@ -327,6 +335,10 @@ impl SwitchedDynamic for System {
 
     fn count(&self) -> usize {
         self.parts.surfaces.len()
+    }
+
+    fn tolerances(&self) -> &[(f64, f64)] {
+        &self.tolerances
     }
 
     fn field(&self, regime: usize, signs: &[f64], t: f64, y: &[f64], slope: &mut [f64]) {

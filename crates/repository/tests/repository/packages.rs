@@ -13,7 +13,7 @@ fn every_package_is_complete() {
     let metadata = MetadataCommand::new().current_dir(&root).no_deps().exec().expect("metadata");
     // A package that is published nowhere has an empty list of registries.
     let published = |package: &&Package| package.publish.as_ref().is_none_or(|to| !to.is_empty());
-    assert_eq!(metadata.packages.iter().filter(published).count(), 17);
+    assert_eq!(metadata.packages.iter().filter(published).count(), 18);
     for package in metadata.packages.iter().filter(published) {
         let name = package.name.as_str();
         assert!(package.description.as_ref().is_some_and(|text| text.len() > 20), "{name}");

@@ -10,7 +10,10 @@ use stickslip_figure::style::FRAME;
 use stickslip_model::spheres::{BodyPair, Surface};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Range};
 use stickslip_studies::Study;
-use stickslip_studies::paper::{MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, ratio};
+use stickslip_studies::paper::{
+    LEAST_EPS_T_2, MOST_VELOCITY_M_PER_S, MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2,
+    ratio,
+};
 
 use super::figure1::limit_line;
 use super::reproduction::Reproduction;
@@ -22,7 +25,7 @@ use crate::error::ReproductionError;
 pub const TITLE: &str = "Figure 2: two steel spheres";
 
 /// The range of both velocities, in m/s.
-pub const VELOCITY: Range = Range { low: 0.0, high: 200.0 };
+pub const VELOCITY: Range = Range { low: 0.0, high: MOST_VELOCITY_M_PER_S };
 const SURFACE: Surface = Surface {
     friction: MU,
     tangential_stiffness_kg_per_s2: STEEL_STIFFNESS_KG_PER_S2,
@@ -45,6 +48,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let (farthest, difference) = sweep.largest(|point| sweep.above_sliding(point).abs());
     let [normal, tangential] =
         [Quantity::Normal, Quantity::Tangential].map(|quantity| sweep.value(quantity, farthest));
+    let least = -sweep.largest(|point| -sweep.results.eps_t[point]).1;
     let most = sweep.most_switches();
     let short = |value: f64| number(value, 4);
 
@@ -93,6 +97,12 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
                 short(tangential),
             ),
             format!(
+                "ε_t is {} at the least on this map, in its lowest rows. The axis of the paper's \
+                 figure ends at {LEAST_EPS_T_2}, which needs smaller g_t than the map shows: see \
+                 statement 25.",
+                number(least, 3)
+            ),
+            format!(
                 "A contact without slip has at most Mindlin's tangential stiffness. Its κ is {} at \
                  every velocity.",
                 short(pair.mindlin_kappa())
@@ -107,6 +117,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
             "mu": MU,
             "kappa": kappa,
             "most_switches": most,
+            "least_eps_t": least,
             "largest_excess": {
                 "abs_eps_t": difference,
                 "normal_m_per_s": normal,

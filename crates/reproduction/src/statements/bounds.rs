@@ -1,11 +1,15 @@
-//! Statements on how large ε_t and the spring may become: 12, 13, 14, 15.
+//! Statements on how large ε_t and the spring may become: 12, 13, 14, 15, 25.
 
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use stickslip_model::exact;
 use stickslip_model::limits::{coulomb, largest};
-use stickslip_studies::paper::{MOST_RATIO_3, MOST_STIFFNESS, Reading, psi};
+use stickslip_model::spheres::{BodyPair, Surface};
+use stickslip_studies::paper::{
+    LEAST_EPS_T_2, MOST_RATIO_3, MOST_STIFFNESS, MOST_VELOCITY_M_PER_S, MU, Reading, STEEL,
+    STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, psi,
+};
 use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
 use super::sampling::{each, geometric};
@@ -213,4 +217,71 @@ pub fn pragmatic(subject: &Subject) -> Result<Finding, Stop> {
     );
     let [printed, axis] = sensible;
     Ok(Finding::by_reading([printed && axis, axis], evidence, explanation))
+}
+
+/// 25: ε_t of the steel spheres of Figure 2 is negative at small g_t, down to -0.6.
+pub fn steel(subject: &Subject) -> Result<Finding, Stop> {
+    /// A row of the figure that is seen has at least so much of its axis.
+    const SEEN: f64 = 1.0 / 400.0;
+    /// Over these g_n, ε_t has about eleven minima; smaller g_n need smaller g_t.
+    const PLACES: usize = 200;
+    const LEAST_M_PER_S: f64 = 0.25 * MOST_VELOCITY_M_PER_S;
+    let surface = Surface {
+        friction: MU,
+        tangential_stiffness_kg_per_s2: STEEL_STIFFNESS_KG_PER_S2,
+        damping_time_s: 0.0,
+    };
+    let pair = BodyPair::equal_spheres(STEEL_RADIUS_M, &STEEL, &surface)?;
+    let normals: Vec<f64> = geometric(LEAST_M_PER_S, MOST_VELOCITY_M_PER_S, PLACES).collect();
+    // The smallest ε_t at a g_t, as the maximum of -ε_t, and the g_n there.
+    let deepest = |tangential: f64| {
+        maximum(&normals, |normal| {
+            let contact = pair.impact(normal, tangential)?.contact;
+            Ok::<_, ReproductionError>(
+                -subject.collide(contact.kappa(), contact.psi(), 0.0)?.eps_t(),
+            )
+        })
+    };
+    // The centre of the lowest row that is seen, and a g_t at which the spring hardly ever yields.
+    let lowest = 0.5 * SEEN * MOST_VELOCITY_M_PER_S;
+    let on_the_map = -deepest(lowest)?.value;
+    let (mut reached, mut missed) = (1e-3 * lowest, lowest);
+    let first = deepest(reached)?;
+    let mut at = first.at;
+    while missed / reached > 1.0 + 1e-6 {
+        let middle = (reached * missed).sqrt();
+        let found = deepest(middle)?;
+        if -found.value <= LEAST_EPS_T_2 {
+            (reached, at) = (middle, found.at);
+        } else {
+            missed = middle;
+        }
+    }
+    let contact = pair.impact(at, reached)?.contact;
+    let rows = (1..u32::MAX).find(|&rows| 0.5 * MOST_VELOCITY_M_PER_S / f64::from(rows) <= reached);
+    let rows = rows.unwrap_or(u32::MAX);
+    let evidence = Evidence::default()
+        .number("largest g_t at which ε_t is -0.6, in m/s", reached)
+        .number("g_n there, in m/s", at)
+        .number("κ there", contact.kappa())
+        .number("ψ there", contact.psi())
+        .number("ψ κ^(5/4) there", contact.psi() * contact.kappa().powf(1.25))
+        .number("smallest ε_t at g_t = 0.25 m/s", on_the_map)
+        .count("rows of equal cells up to 200 m/s of which the lowest one shows it", rows as usize);
+    let explanation = format!(
+        "At each g_t the smallest ε_t was looked for over {PLACES} g_n from {LEAST_M_PER_S} to \
+         {MOST_VELOCITY_M_PER_S} m/s, with golden section around the best. At g_t = {lowest} m/s, the \
+         lowest row of a map of 400 rows, it is {on_the_map:.3}; it falls with g_t, and is \
+         {LEAST_EPS_T_2} at g_t = {reached:.4} m/s, g_n = {at:.1} m/s. Since w at the end falls as \
+         κ^(-5/4), this g_t falls as g_n^(3/2). A map up to {MOST_VELOCITY_M_PER_S} m/s shows it from \
+         {rows} rows on. It counts as seen in the figure if 400 rows show it.",
+    );
+    if -first.value > LEAST_EPS_T_2 {
+        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+    }
+    if on_the_map <= LEAST_EPS_T_2 {
+        return Ok(Finding::new(Verdict::Holds, evidence, explanation));
+    }
+    let condition = format!("up to g_t = {reached:.3} m/s, on a map of {rows} rows or more");
+    Ok(Finding::under(condition, evidence, explanation))
 }

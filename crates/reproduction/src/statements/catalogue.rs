@@ -6,7 +6,7 @@ use super::{bounds, counts, course, parameters, regimes, sliding};
 use crate::error::ReproductionError;
 
 /// The number of statements.
-pub const COUNT: u8 = 24;
+pub const COUNT: u8 = 25;
 
 /// A statement in other words, its place in the paper, and its test.
 struct Entry(&'static str, &'static str, fn(&Subject) -> Result<Finding, Stop>);
@@ -41,6 +41,7 @@ const ENTRIES: [Entry; COUNT as usize] = [
     Entry("The spring's elongation at the first switch grows as g_t/g_n falls.", "Fig. 5", course::first_elongation),
     Entry("ε_t is negative after an odd number of reversals of the motion, positive after an even one.", "Fig. 5", counts::signs),
     Entry("For a small enough g_t/g_n there are two switches.", "Fig. 5 o", counts::small_ratio),
+    Entry("Two steel spheres have a negative ε_t at small g_t, down to -0.6.", "Fig. 2", bounds::steel),
 ];
 
 /// Tests statement `number`, from 1 to [`COUNT`].

@@ -10,7 +10,7 @@ fn there_is_no_statement_0_and_none_after_the_last() {
     for number in [0, COUNT + 1, 255] {
         let error = statements::run(Spring::Reset, &[number], SILENT).unwrap_err();
         assert!(matches!(error, ReproductionError::Statement { .. }), "{error}");
-        assert_eq!(error.to_string(), format!("there is no statement {number}; expected 1 to 24"));
+        assert_eq!(error.to_string(), format!("there is no statement {number}; expected 1 to 25"));
     }
     assert!(statements::run(Spring::Reset, &[], SILENT).unwrap().statements.is_empty());
 }

@@ -52,6 +52,10 @@ impl<S: DynamicSystem> DynamicSystem for Reversed<&S> {
         }
     }
 
+    fn tolerances(&self) -> &[(f64, f64)] {
+        self.0.tolerances()
+    }
+
     fn guards(&self, mode: S::Mode) -> &[Guard] {
         self.0.guards(mode)
     }
@@ -104,8 +108,8 @@ impl<O: DynamicObserver<Mode>, Mode: Copy> DynamicObserver<Mode> for Reversed<&m
         self.0.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.0.stops()
+    fn stops(&self, tau: f64) -> bool {
+        self.0.stops(reverse(tau))
     }
 
     fn on_segment(&mut self, mode: Mode, dense: &DynamicDense<'_>) {

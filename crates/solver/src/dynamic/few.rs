@@ -1,6 +1,6 @@
 //! Systems of few components and guards, on states of fixed dimension.
 //!
-//! A system is filled up to 2, 4 or 8 components, which stay 0, and to as many guards, which are
+//! A system is padded to 2, 4 or 8 components, which stay 0, and to as many guards, which are
 //! off. The mean error of a step is taken over the components that exist. For two components a run
 //! on buffers is ten times slower, because buffers are moved where arrays dissolve.
 //!
@@ -17,25 +17,25 @@ use crate::hybrid::{
 use crate::method::{Dense, Method, State, Step, Trial};
 use stickslip_number::{Enclosure, Interval};
 
-/// Returns what a function makes of a system that has been filled up, if the system is small enough
+/// Returns what a function makes of a system that has been padded, if the system is small enough
 /// and wants to. It is a macro since the function is generic in the dimensions.
 macro_rules! on_fixed_states {
-    ($system:expr, $start:expr, |$filled:ident, $from:ident, $n:ident| $body:expr) => {
+    ($system:expr, $start:expr, |$padded:ident, $from:ident, $n:ident| $body:expr) => {
         if S::ON_FIXED_STATES {
             let $n = $start.state.len();
             match ($n, $system.most_guards()) {
                 (1..=2, 0..=2) => {
-                    let $filled = $crate::dynamic::few::Filled::<S, 2, 2>::new($system, $n);
+                    let $padded = $crate::dynamic::few::Padded::<S, 2, 2>::new($system, $n);
                     let $from = $crate::dynamic::few::start(&$start);
                     return $body;
                 }
                 (1..=4, 0..=4) => {
-                    let $filled = $crate::dynamic::few::Filled::<S, 4, 4>::new($system, $n);
+                    let $padded = $crate::dynamic::few::Padded::<S, 4, 4>::new($system, $n);
                     let $from = $crate::dynamic::few::start(&$start);
                     return $body;
                 }
                 (1..=8, 0..=8) => {
-                    let $filled = $crate::dynamic::few::Filled::<S, 8, 8>::new($system, $n);
+                    let $padded = $crate::dynamic::few::Padded::<S, 8, 8>::new($system, $n);
                     let $from = $crate::dynamic::few::start(&$start);
                     return $body;
                 }
@@ -46,21 +46,21 @@ macro_rules! on_fixed_states {
 }
 pub(crate) use on_fixed_states;
 
-/// Where a run of a system that has been filled up starts.
+/// Where a run of a system that has been padded starts.
 pub(crate) fn start<Mode: Copy, const N: usize>(start: &DynamicStart<'_, Mode>) -> Start<Mode, N> {
     let state = State::from_fn(|i, _| start.state.get(i).copied().unwrap_or(0.0));
     Start { mode: start.mode, s: start.s, state }
 }
 
-/// A system of `n` ≤ `N` components, filled up.
-pub(crate) struct Filled<'a, S, const N: usize, const G: usize> {
+/// A system of `n` ≤ `N` components, padded.
+pub(crate) struct Padded<'a, S, const N: usize, const G: usize> {
     system: &'a S,
     n: usize,
     /// What the mean over all components is to be multiplied by.
     share: f64,
 }
 
-impl<'a, S: DynamicSystem, const N: usize, const G: usize> Filled<'a, S, N, G> {
+impl<'a, S: DynamicSystem, const N: usize, const G: usize> Padded<'a, S, N, G> {
     pub(crate) fn new(system: &'a S, n: usize) -> Self {
         Self { system, n, share: (N as f64 / n as f64).sqrt() }
     }
@@ -81,7 +81,7 @@ impl<'a, S: DynamicSystem, const N: usize, const G: usize> Filled<'a, S, N, G> {
     }
 }
 
-impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Filled<'_, S, N, G> {
+impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Padded<'_, S, N, G> {
     type Mode = S::Mode;
     const READABLE: bool = S::READABLE;
 
@@ -113,7 +113,9 @@ impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Fi
     }
     #[inline]
     fn step<M: Method>(&self, mode: S::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
-        step.take::<M>(&mut |s, y| self.slopes(mode, s, y), trial);
+        let own = self.system.tolerances();
+        let tolerances = |i: usize| own.get(i).copied().unwrap_or(trial.tolerances);
+        step.take_with::<M>(&mut |s, y| self.slopes(mode, s, y), trial, tolerances);
         step.error *= self.share;
     }
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<N>) -> (S::Mode, State<N>) {
@@ -143,13 +145,13 @@ impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Fi
     }
 }
 
-/// Reports to the observer of a system what happens to the filled system.
-pub(crate) struct Emptied<'a, O> {
+/// Reports to the observer of a system what happens to the padded system.
+pub(crate) struct Unpadded<'a, O> {
     pub(crate) observer: &'a mut O,
     pub(crate) n: usize,
 }
 
-impl<Mode: Copy, O: DynamicObserver<Mode>, const N: usize> Observer<Mode, N> for Emptied<'_, O> {
+impl<Mode: Copy, O: DynamicObserver<Mode>, const N: usize> Observer<Mode, N> for Unpadded<'_, O> {
     const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
 
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
@@ -182,8 +184,8 @@ impl<Mode: Copy, O: DynamicObserver<Mode>, const N: usize> Observer<Mode, N> for
     fn forget(&mut self, switches: usize) {
         self.observer.forget(switches);
     }
-    fn stops(&self) -> bool {
-        self.observer.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.observer.stops(s)
     }
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
         let mut r = [0.0; 64];

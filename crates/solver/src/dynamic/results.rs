@@ -51,6 +51,7 @@ impl<Mode: Copy> DynamicEvent<'_, Mode> {
 
 /// A [`DynamicEvent`] that is kept. A `Vec` of them is an observer.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DynamicSwitch<Mode> {
     /// The place of the switch.
     pub s: f64,
@@ -97,9 +98,9 @@ pub trait DynamicObserver<Mode> {
     /// one instant, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
     fn forget(&mut self, _switches: usize) {}
 
-    /// Whether the run should stop, with [`Outcome::Stopped`]. Called after every step and every
-    /// switch.
-    fn stops(&self) -> bool {
+    /// Whether the run should stop at `s`, with [`Outcome::Stopped`]. Called after every step and
+    /// every switch.
+    fn stops(&self, _s: f64) -> bool {
         false
     }
 
@@ -128,6 +129,7 @@ impl<Mode: Copy> DynamicObserver<Mode> for Vec<DynamicSwitch<Mode>> {
 /// How a run of a [`DynamicSystem`](crate::dynamic::DynamicSystem) ended.
 #[must_use = "a run may end early, which its outcome tells; `finished` turns that into an error"]
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DynamicRun<Mode> {
     /// Why the run ended.
     pub outcome: Outcome,

@@ -1,7 +1,7 @@
 //! A run of a dynamic system: the engine on buffers.
 
 use crate::dynamic::dense::DynamicDense;
-use crate::dynamic::few::{Emptied, on_fixed_states};
+use crate::dynamic::few::{Unpadded, on_fixed_states};
 use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicRun};
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
@@ -37,29 +37,30 @@ where
     S: DynamicSystem,
     O: DynamicObserver<S::Mode>,
 {
-    on_fixed_states!(system, start, |filled, from, n| {
-        let mut observer = Emptied { observer, n };
-        let run = run(method, &filled, from, end, options, &mut observer)?;
+    on_fixed_states!(system, start, |padded, from, n| {
+        let mut observer = Unpadded { observer, n };
+        let run = run(method, &padded, from, end, options, &mut observer)?;
         let Run { outcome, s, mode, state, decided, statistics } = run;
         let state = state.as_slice()[..n].to_vec();
         Ok(DynamicRun { outcome, s, mode, state, decided, statistics })
     });
-    let mut told = Told { observer, simultaneous: Vec::new(), coefficients: Vec::new() };
+    let mut watcher =
+        DynamicWatcher { observer, simultaneous: Vec::new(), coefficients: Vec::new() };
     let from = (start.mode, start.s, &start.state.to_vec());
     let system = Free::new(system, start.state.len());
-    let run = run_any::<M, _, _>(&system, from, end, options, &mut told)?;
+    let run = run_any::<M, _, _>(&system, from, end, options, &mut watcher)?;
     let End { outcome, s, mode, state, decided, statistics } = run;
     Ok(DynamicRun { outcome, s, mode, state, decided, statistics })
 }
 
 /// An observer of a run, with room for lists.
-struct Told<'a, O> {
+struct DynamicWatcher<'a, O> {
     observer: &'a mut O,
     simultaneous: Vec<usize>,
     coefficients: Vec<f64>,
 }
 
-impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for Told<'_, O> {
+impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for DynamicWatcher<'_, O> {
     const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
 
     fn on_switch(&mut self, note: &Note<Free<'_, S>>) {
@@ -94,8 +95,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for Tol
     fn forget(&mut self, switches: usize) {
         self.observer.forget(switches);
     }
-    fn stops(&self) -> bool {
-        self.observer.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.observer.stops(s)
     }
     fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<Vec<f64>>) {
         self.coefficients.clear();

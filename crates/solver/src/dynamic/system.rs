@@ -44,6 +44,12 @@ pub trait DynamicSystem {
         usize::MAX
     }
 
+    /// A relative and an absolute tolerance of a step's error for each component, in the place of
+    /// those of the [options](crate::Options). A list that is shorter leaves the others to these.
+    fn tolerances(&self) -> &[(f64, f64)] {
+        &[]
+    }
+
     /// The components that the guards read, in any order; an empty list means all.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
         &[]
@@ -141,6 +147,11 @@ pub trait ReadableDynamic {
         usize::MAX
     }
 
+    /// As [`DynamicSystem::tolerances`].
+    fn tolerances(&self) -> &[(f64, f64)] {
+        &[]
+    }
+
     /// The components that the guards read, in any order; an empty list means all. Only these are
     /// bounded, which saves time if they are few.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
@@ -186,6 +197,9 @@ impl<S: ReadableDynamic> DynamicSystem for S {
 
     fn most_guards(&self) -> usize {
         ReadableDynamic::most_guards(self)
+    }
+    fn tolerances(&self) -> &[(f64, f64)] {
+        ReadableDynamic::tolerances(self)
     }
     #[inline]
     fn field(&self, mode: S::Mode, s: f64, y: &[f64], slope: &mut [f64]) {

@@ -3,9 +3,9 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
-use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::{Curve, Enclosed};
 use crate::events::path::Path;
+use crate::events::sidestep::{Sidestep, resolution};
 use crate::hybrid::Statistics;
 use crate::lists::{List, Shape};
 use crate::method::{DenseOf, Field, Method, StepOf, Store, TrialOf};
@@ -183,7 +183,7 @@ impl<S: System, M: Method> AlongStep<'_, S, M> {
     /// the method and the guard's value.
     fn step_to(&mut self, theta: f64) -> Result<(f64, StepOf<S::State>, f64), RunError> {
         let step = self.step;
-        let mut aside = Aside::new(self.guard, step.s, resolution(step.s, step.h));
+        let mut sidestep = Sidestep::new(self.guard, step.s, resolution(step.s, step.h));
         let mut place = theta;
         loop {
             let state = self.state_at(place);
@@ -192,7 +192,7 @@ impl<S: System, M: Method> AlongStep<'_, S, M> {
                 return Ok((place, state, value));
             }
             self.room.give_step(state);
-            place = aside.of(theta)?;
+            place = sidestep.of(theta)?;
         }
     }
 }

@@ -26,7 +26,7 @@ impl<S: System> Examination<'_, S> {
             let s = step.s + step.h;
             // It has acted within rounding of this place.
             let here = self.age + step.h <= UNSEEN * self.drift;
-            if here && self.phase.forgiven[guard] {
+            if here && self.phase.zero_by_rounding[guard] {
                 continue;
             }
             if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {

@@ -110,7 +110,7 @@ impl<S: System> Examination<'_, S> {
     ) {
         for guard in 0..self.phase.count() {
             let value = self.phase.values[guard];
-            if !self.phase.forgiven[guard] || value == 0.0 {
+            if !self.phase.zero_by_rounding[guard] || value == 0.0 {
                 continue;
             }
             let (system, mode, s) = (self.system, self.phase.mode, self.trial.s);

@@ -5,10 +5,10 @@
 
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
-use crate::events::aside::{Aside, resolution};
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
+use crate::events::sidestep::{Sidestep, resolution};
 use crate::events::status::Crossing;
 use crate::method::{Method, StepOf, Store};
 use crate::system::{Room, System};
@@ -74,7 +74,7 @@ impl<S: System> Examination<'_, S> {
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
         let width = room((low, high), theta) * step.h;
         let (mut last_value, resolution) = (f64::INFINITY, resolution(step.s, step.h));
-        let mut aside = Aside::new(guard, step.s, resolution);
+        let mut sidestep = Sidestep::new(guard, step.s, resolution);
         loop {
             let mut trial = self.restep::<M>(step, theta * step.h);
             let reach = (REACH * trial.h).min((INSIDE * width).max(LEAST_REACH * trial.h));
@@ -87,7 +87,7 @@ impl<S: System> Examination<'_, S> {
                         near.landing_at_hole(&trial, &end, resolution * step.h, self.room);
                     return Ok(Some(event(landing, trial)));
                 }
-                theta = aside.of(theta)?;
+                theta = sidestep.of(theta)?;
                 continue;
             }
             if end.value < 0.0 {

@@ -93,8 +93,8 @@ mod tests {
         for noticed in [touch(2.0), touch(1.0), touch(1.0 + 1e-9), pole(1.5), touch(3.0)] {
             notices.add(noticed, 1.0);
         }
-        let told: Vec<_> = std::iter::from_fn(|| notices.next_until(2.0)).collect();
-        assert_eq!(told, [touch(1.0), pole(1.5), touch(2.0)]);
+        let noticed: Vec<_> = std::iter::from_fn(|| notices.next_until(2.0)).collect();
+        assert_eq!(noticed, [touch(1.0), pole(1.5), touch(2.0)]);
         assert_eq!(notices.next_until(f64::INFINITY), Some(touch(3.0)));
     }
 }

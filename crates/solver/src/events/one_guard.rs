@@ -9,7 +9,6 @@ use crate::events::along_step::{
     AlongStep, EnclosedAlongStep, dense_output, repeated_step, start_rate,
 };
 use crate::events::arrival::SAME;
-use crate::events::aside::resolution;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_enclosed_sign,
@@ -17,6 +16,7 @@ use crate::events::isolate::{
 };
 use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
+use crate::events::sidestep::resolution;
 use crate::events::status::{Crossing, Status};
 use crate::hybrid::Direction;
 use crate::lists::List;
@@ -119,8 +119,8 @@ impl<S: System> Examination<'_, S> {
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
         let found = self.isolate_from::<M>(guard, step, values, beginning)?;
-        let forgiven = self.phase.forgiven[guard] && beginning.zero_order > 0;
-        if found.is_none() && forgiven && !self.leaves(guard, step) {
+        let zero_by_rounding = self.phase.zero_by_rounding[guard] && beginning.zero_order > 0;
+        if found.is_none() && zero_by_rounding && !self.leaves(guard, step) {
             // It is not a zero that can be divided out, so its sign counts.
             let beginning = Beginning { zero_order: 0, ..beginning };
             return self.isolate_from::<M>(guard, step, values, beginning);

@@ -1,8 +1,8 @@
 //! The active mode with its guards, between two steps.
 //!
-//! A guard that stood on its zero is remembered beyond its phase. Another guard may act at the same
-//! instant and lead to a mode in which the first guard is still on its zero, wherever rounding has
-//! put it. So a phase without length hands on which guards stood on zero. A guard that changes its
+//! A guard that was zero where its phase began is remembered beyond the phase. Another guard may act
+//! at the same instant and lead to a mode in which the first guard is still zero, wherever rounding
+//! has put it. So a phase without length hands on which guards were zero. A guard that changes its
 //! sign with the mode, or whose sign a prescribed run turns, is recognised by the size of its
 //! value.
 
@@ -29,7 +29,7 @@ pub(crate) struct Phase<S: System> {
     /// The orders of the zeros from which the guards start the next step, 0 if they do not.
     pub(crate) zero_orders: PerGuard<S, u32>,
     /// Whether a guard counts as zero only because rounding may have moved it away.
-    pub(crate) forgiven: PerGuard<S, bool>,
+    pub(crate) zero_by_rounding: PerGuard<S, bool>,
     /// The largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: PerGuard<S, f64>,
 }
@@ -45,7 +45,7 @@ impl<S: System> Phase<S> {
             values: List::of(0, 0.0),
             at_zero: false,
             zero_orders: List::of(0, 0),
-            forgiven: List::of(0, false),
+            zero_by_rounding: List::of(0, false),
             largest: List::of(0, 0.0),
         }
     }
@@ -75,7 +75,7 @@ impl<S: System> Phase<S> {
         self.values.fit(n, 0.0);
         system.guard_values(mode, s, y, &mut self.values);
         self.zero_orders.fit(n, 0);
-        self.forgiven.fit(n, false);
+        self.zero_by_rounding.fit(n, false);
         self.largest.fit(n, 0.0);
         self.smooth = self.guards.parts().iter().all(Guard::needs_no_look);
         self.at_zero = false;
@@ -88,7 +88,7 @@ impl<S: System> Phase<S> {
             }
             self.at_zero |= of.zero_order() > 0;
             self.zero_orders[guard] = of.zero_order();
-            self.forgiven[guard] = false;
+            self.zero_by_rounding[guard] = false;
             self.largest[guard] = value.abs();
         }
         Ok(())
@@ -117,7 +117,7 @@ impl<S: System> Phase<S> {
     pub(crate) fn forgive(&mut self, guard: usize) {
         self.at_zero = true;
         self.zero_orders[guard] = 1;
-        self.forgiven[guard] = true;
+        self.zero_by_rounding[guard] = true;
     }
 
     /// Goes on after a step, at whose end the guards have these values.
@@ -135,6 +135,6 @@ impl<S: System> Phase<S> {
     pub(crate) fn forget_zeros(&mut self) {
         self.at_zero = false;
         self.zero_orders.parts_mut().fill(0);
-        self.forgiven.parts_mut().fill(false);
+        self.zero_by_rounding.parts_mut().fill(false);
     }
 }

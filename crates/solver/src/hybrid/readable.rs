@@ -15,6 +15,10 @@ use stickslip_number::{Enclosure, Interval, Number};
 /// them with [`Enclosure`]s, so that it *decides* whether they cross zero, however steep, fast or
 /// kinked they are. Rates of guards come from dual numbers.
 ///
+/// Formulas are written with a number first and a constant behind it: `-y[0] * 2.0 + 19.0` and not
+/// `19.0 - 2.0 * y[0]`, since Rust has no operators of `f64` with a type of somebody else on its
+/// right. `T::from(c)` is a constant that stands alone.
+///
 /// ```
 /// use stickslip_solver::{
 ///     Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run,

@@ -4,6 +4,7 @@ use crate::method::{Dense, State};
 
 /// A guard fired.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SwitchEvent<Mode, const N: usize> {
     /// The place of the switch.
     pub s: f64,
@@ -116,9 +117,9 @@ pub trait Observer<Mode, const N: usize> {
     /// one instant, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
     fn forget(&mut self, _switches: usize) {}
 
-    /// Whether the run should stop, with [`Outcome::Stopped`]. Called after every step and every
-    /// switch.
-    fn stops(&self) -> bool {
+    /// Whether the run should stop at `s`, with [`Outcome::Stopped`]. Called after every step and
+    /// every switch.
+    fn stops(&self, _s: f64) -> bool {
         false
     }
 
@@ -194,6 +195,7 @@ impl Statistics {
 /// How a run ended.
 #[must_use = "a run may end early, which its outcome tells; `finished` turns that into an error"]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Run<Mode, const N: usize> {
     /// Why the run ended.
     pub outcome: Outcome,

@@ -144,8 +144,10 @@ impl StepOf<Vec<f64>> {
         &mut self,
         mut field: &mut Field<'_, Vec<f64>>,
         trial: &TrialOf<'_, Vec<f64>>,
+        own: &[(f64, f64)],
     ) {
-        self.take_in_place::<M>(&mut field, trial, |_| trial.tolerances);
+        let tolerances = |i: usize| own.get(i).copied().unwrap_or(trial.tolerances);
+        self.take_in_place::<M>(&mut field, trial, tolerances);
     }
 }
 

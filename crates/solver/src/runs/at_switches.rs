@@ -33,7 +33,7 @@ impl<S: System, F: FnMut(&Note<S>) -> bool> Watcher<S> for AtSwitches<F> {
     fn on_preempted(&mut self, _: &Preempted<S::Mode>) {}
     fn on_rest(&mut self, _: &Rest<S::Mode>) {}
     fn forget(&mut self, _: usize) {}
-    fn stops(&self) -> bool {
+    fn stops(&self, _: f64) -> bool {
         self.stops
     }
     fn on_segment(&mut self, _: S::Mode, _: &DenseOf<S::State>) {}

@@ -186,8 +186,8 @@ where
         self.0.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.0.stops()
+    fn stops(&self, tau: f64) -> bool {
+        self.0.stops(reverse(tau))
     }
 
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {

@@ -54,8 +54,8 @@ where
         self.1.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.0.stops() || self.1.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.0.stops(s) || self.1.stops(s)
     }
 
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {

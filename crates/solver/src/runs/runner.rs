@@ -24,7 +24,7 @@ use crate::runs::finite::{check_finite, is_finite};
 use crate::runs::rejected::after_rejection;
 use crate::runs::runner::instant::Instant;
 use crate::runs::runner::last_part::last_part;
-use crate::runs::runner::watcher::Told;
+use crate::runs::runner::watcher::FixedWatcher;
 use crate::system::{Fixed, PerGuard, Room, System};
 
 pub(crate) use crate::runs::runner::watcher::Watcher;
@@ -52,10 +52,15 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    let mut told = Told(observer);
+    let mut watcher = FixedWatcher(observer);
     let state = &start.state;
-    let run =
-        run_any::<M, _, _>(&Fixed(system), (start.mode, start.s, state), end, options, &mut told)?;
+    let run = run_any::<M, _, _>(
+        &Fixed(system),
+        (start.mode, start.s, state),
+        end,
+        options,
+        &mut watcher,
+    )?;
     let End { outcome, s, mode, state, decided, statistics } = run;
     Ok(Run { outcome, s, mode, state, decided, statistics })
 }
@@ -184,7 +189,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 check_finite(self.clock.s, self.state.parts())?;
                 return Ok(Outcome::ReachedEnd);
             }
-            if self.observer.stops() {
+            if self.observer.stops(self.clock.s) {
                 return Ok(Outcome::Stopped);
             }
         }
@@ -468,7 +473,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             self.statistics.switches += 1;
             let outcome = if self.statistics.switches >= self.options.max_switches {
                 Outcome::SwitchLimit
-            } else if self.observer.stops() {
+            } else if self.observer.stops(note.s) {
                 Outcome::Stopped
             } else {
                 continue;

@@ -86,6 +86,11 @@ pub trait SwitchedDynamic {
     /// Writes the values of the system's own guards to `values`.
     fn guard_values(&self, _mode: Self::Mode, _s: f64, _y: &[f64], _values: &mut [f64]) {}
 
+    /// As [`DynamicSystem::tolerances`].
+    fn tolerances(&self) -> &[(f64, f64)] {
+        &[]
+    }
+
     /// Changes the state `y` to the one that follows when one of the system's own guards fires, and
     /// returns the mode that follows.
     fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
@@ -358,6 +363,10 @@ impl<S: SwitchedDynamic> DynamicSystem for SampledFilippov<S> {
 
     fn field(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &mut [f64]) {
         self.field_of(mode, s, y, slope);
+    }
+
+    fn tolerances(&self) -> &[(f64, f64)] {
+        self.system.tolerances()
     }
 
     fn guards(&self, mode: Self::Mode) -> &[Guard] {

@@ -62,7 +62,7 @@ impl<const N: usize> Observer<(), N> for Log<N> {
         self.switches.truncate(self.switches.len() - switches);
     }
 
-    fn stops(&self) -> bool {
+    fn stops(&self, _: f64) -> bool {
         self.stop_after > 0 && self.switches.len() >= self.stop_after
     }
 

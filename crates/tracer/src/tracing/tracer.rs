@@ -13,7 +13,7 @@
 
 pub mod count;
 mod ends;
-mod island;
+pub(crate) mod island;
 mod resume;
 mod scan;
 mod sliver;

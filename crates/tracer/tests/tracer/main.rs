@@ -2,6 +2,7 @@
 
 mod any;
 mod bent_chessboard;
+mod by_margins;
 mod conditions;
 mod counting;
 #[cfg(feature = "serde")]

@@ -1,5 +1,6 @@
 //! Surveys on several threads, cancelled anywhere, and resumed.
 
+use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
@@ -157,6 +158,50 @@ fn cancelled_anywhere(options: AtlasOptions, every: usize) {
     // It was cancelled with nothing, with a part, and with the whole.
     assert!(curves[0] > 0 && curves[whole.plane.curves().len()] > 0, "{curves:?}");
     assert!(curves.iter().filter(|&&count| count > 0).count() > 2, "{curves:?}");
+}
+
+/// A label that changes where no margin vanishes leaves a doubt in both ways of tracing.
+struct Unexplained;
+
+impl Family for Unexplained {
+    type Label = bool;
+    type Margin = ();
+    type Error = Infallible;
+
+    fn label(&self, point: &Point) -> Result<bool, Infallible> {
+        Ok(point.x + 0.3 * point.y > 0.1)
+    }
+    fn margin(&self, point: &Point, (): &()) -> Result<Option<f64>, Infallible> {
+        Ok(Some(2.0 + point.y))
+    }
+    fn free_run(&self, point: &Point) -> Result<FreeRun<bool, ()>, Infallible> {
+        Ok(FreeRun { label: self.label(point)?, margins: vec![((), 2.0 + point.y)] })
+    }
+}
+
+#[test]
+fn a_survey_with_a_doubt_cancelled_anywhere_goes_on_to_the_same_doubt() {
+    let mut options = options();
+    (options.trace.cells, options.verify.random_points, options.rounds) = (4, 200, 2);
+    let surveyor = Surveyor { options, ..Surveyor::default() };
+    let asked = AtomicUsize::new(0);
+    let count = || asked.fetch_add(1, Ordering::Relaxed) == usize::MAX;
+    let counting = Surveyor { watch: Watch::SILENT.cancelled_by(&count), ..surveyor };
+    let whole = counting.atlas(&Unexplained, &WINDOW).unwrap();
+    assert!(whole.is_finished() && !whole.agrees());
+    let all = asked.into_inner();
+    for last in (0..all).step_by(7).chain([all - 1]) {
+        let asked = AtomicUsize::new(0);
+        let cancel = || asked.fetch_add(1, Ordering::Relaxed) >= last;
+        let cancelled = Surveyor { watch: Watch::SILENT.cancelled_by(&cancel), ..surveyor };
+        let begun = cancelled.atlas(&Unexplained, &WINDOW).unwrap();
+        assert!(!begun.is_finished(), "{last} of {all}");
+        let resumed = surveyor.resume(&Unexplained, begun).unwrap();
+        assert!(resumed.is_finished());
+        assert_eq!(resumed.unresolved, whole.unresolved, "{last} of {all}");
+        assert_eq!(resumed.verification, whole.verification, "{last} of {all}");
+        assert_eq!(resumed.rounds, whole.rounds);
+    }
 }
 
 #[test]

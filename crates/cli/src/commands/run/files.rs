@@ -124,6 +124,6 @@ pub fn draw(run: &SystemRun, found: &Recording) -> Svg {
 }
 
 /// A number for a title.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     stickslip_figure::number(value, 6)
 }

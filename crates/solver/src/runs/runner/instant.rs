@@ -113,7 +113,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 Some(next) => guard = next,
                 None => break,
             }
-            if self.observer.stops() {
+            if self.observer.stops(self.clock.s) {
                 return Ok(Some(Outcome::Stopped));
             }
         }

@@ -14,15 +14,15 @@ pub(crate) trait Watcher<S: System> {
     fn on_preempted(&mut self, preempted: &Preempted<S::Mode>);
     fn on_rest(&mut self, rest: &Rest<S::Mode>);
     fn forget(&mut self, switches: usize);
-    fn stops(&self) -> bool;
+    fn stops(&self, s: f64) -> bool;
     fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<S::State>);
     fn on_end(&mut self, mode: S::Mode, s: f64, state: &S::State);
 }
 
 /// An observer of a run of fixed dimension.
-pub(super) struct Told<'a, O>(pub(super) &'a mut O);
+pub(super) struct FixedWatcher<'a, O>(pub(super) &'a mut O);
 
-impl<S, O, const N: usize, const G: usize> Watcher<Fixed<'_, S, N, G>> for Told<'_, O>
+impl<S, O, const N: usize, const G: usize> Watcher<Fixed<'_, S, N, G>> for FixedWatcher<'_, O>
 where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
@@ -63,8 +63,8 @@ where
         self.0.forget(switches);
     }
     #[inline(always)]
-    fn stops(&self) -> bool {
-        self.0.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.0.stops(s)
     }
     #[inline(always)]
     fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<State<N>>) {

@@ -117,7 +117,7 @@ impl DynamicObserver<()> for Watcher {
             assert_eq!(dense.component(theta, 2), None);
         }
     }
-    fn stops(&self) -> bool {
+    fn stops(&self, _: f64) -> bool {
         self.switches >= self.most
     }
     fn on_end(&mut self, (): (), s: f64, state: &[f64]) {

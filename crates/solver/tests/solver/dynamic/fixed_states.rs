@@ -2,10 +2,13 @@
 
 use stickslip_solver::dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicStart, DynamicSwitch, DynamicSystem,
-    ReadableDynamic, run_dynamic,
+    ReadableDynamic, run_dynamic, run_dynamic_backwards,
 };
 use stickslip_solver::margin::{Margin, Margins, follow_dynamic, margin_dynamic, margins_dynamic};
-use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Number, Options, RunError};
+use stickslip_solver::{
+    Closures, Direction, Dop853, Dopri5, Guard, Method, Number, Options, RunError, Start, State,
+    Weighted, run,
+};
 
 /// Levels that rise and fall. The even ones are pushed up when they are low; after a push only the
 /// first one is watched, until it has risen.
@@ -164,4 +167,64 @@ fn other_systems_run_on_buffers() {
     let start = DynamicStart { mode: false, s: 0.0, state: &[] };
     let run = run_dynamic(Dop853, &none, start, 3.0, &Options::default(), &mut ());
     assert_eq!(run.expect("a run").s, 3.0);
+}
+
+/// Two oscillators of very different speed, with tolerances of their own, or with none.
+struct Oscillators<const ON_FIXED_STATES: bool>(Vec<(f64, f64)>);
+
+impl<const ON_FIXED_STATES: bool> ReadableDynamic for Oscillators<ON_FIXED_STATES> {
+    type Mode = ();
+    const ON_FIXED_STATES: bool = ON_FIXED_STATES;
+
+    fn most_guards(&self) -> usize {
+        0
+    }
+    fn tolerances(&self) -> &[(f64, f64)] {
+        &self.0
+    }
+    fn field<T: Number>(&self, (): (), _: T, y: &[T], slope: &mut [T]) {
+        slope.copy_from_slice(&[y[1], -y[0], y[3] * 30.0, -y[2] * 30.0]);
+    }
+    fn guards(&self, (): ()) -> &[Guard] {
+        &[]
+    }
+    fn guard_values<T: Number>(&self, (): (), _: T, _: &[T], _: &mut [T]) {}
+}
+
+#[test]
+fn each_component_has_its_tolerance() {
+    let state = [0.0, 1.0, 0.0, 1.0];
+    let start = || DynamicStart { mode: (), s: 0.0, state: &state };
+    let options = Options { rtol: 1e-11, atol: 1e-11, ..Options::default() };
+    let fixed = |own: &[(f64, f64)]| {
+        let system = Oscillators::<true>(own.to_vec());
+        let run = run_dynamic(Dop853, &system, start(), 3.0, &options, &mut ()).expect("a run");
+        (run.state, run.statistics.accepted)
+    };
+    let free = |own: &[(f64, f64)]| {
+        let system = Oscillators::<false>(own.to_vec());
+        let run = run_dynamic(Dop853, &system, start(), 3.0, &options, &mut ()).expect("a run");
+        let back = run_dynamic_backwards(Dop853, &system, start(), -3.0, &options, &mut ());
+        assert_eq!(back.expect("a run").statistics, run.statistics);
+        (run.state, run.statistics.accepted)
+    };
+    let (strict, loose) = ((1e-11, 1e-11), (1e-4, 1e-4));
+    let all = [strict, strict, loose, loose];
+    // Those that a short list leaves out have the tolerances of the options.
+    assert_eq!(fixed(&[]), fixed(&[strict; 3]));
+    assert_eq!(free(&[]), free(&[strict]));
+    let many = free(&[]).1;
+    for (state, few) in [fixed(&all), free(&all)] {
+        assert!(2 * few < many, "{few} {many}");
+        assert!((state[0] - 3.0_f64.sin()).abs() < 1e-9, "{state:?}");
+        let error = (state[2] - 90.0_f64.sin()).abs();
+        assert!(error > 1e-6 && error < 0.1, "{error}");
+    }
+    // As a system of fixed dimension has them.
+    let field = |_s: f64, y: &State<4>| State::from([y[1], -y[0], 30.0 * y[3], -30.0 * y[2]]);
+    let system = Closures::new(field);
+    let weighted = Weighted::new(&system, all).expect("tolerances");
+    let start = Start { mode: (), s: 0.0, state: State::from(state) };
+    let end = run(Dop853, &weighted, start, 3.0, &options, &mut ()).expect("a run");
+    assert_eq!((end.state.as_slice().to_vec(), end.statistics.accepted), free(&all));
 }

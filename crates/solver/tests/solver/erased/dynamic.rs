@@ -146,7 +146,7 @@ trait Sees {
     fn on_grazing(&mut self, grazing: &Grazing<usize>);
     fn on_pole(&mut self, pole: &Pole<usize>);
     fn forget(&mut self, switches: usize);
-    fn stops(&self) -> bool;
+    fn stops(&self, s: f64) -> bool;
     fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>);
     fn on_end(&mut self, mode: usize, s: f64, state: &[f64]);
 }
@@ -187,8 +187,8 @@ impl<O: DynamicObserver<Mode>, Mode: Copy + PartialEq> Sees for Told<'_, O, Mode
         self.observer.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.observer.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.observer.stops(s)
     }
 
     fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {
@@ -222,8 +222,8 @@ impl<const WANTS_SEGMENTS: bool> DynamicObserver<usize> for Watching<'_, WANTS_S
         self.0.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.0.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.0.stops(s)
     }
 
     fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {

@@ -142,7 +142,7 @@ pub trait Sees<const N: usize> {
     fn on_grazing(&mut self, grazing: &Grazing<usize>);
     fn on_pole(&mut self, pole: &Pole<usize>);
     fn forget(&mut self, switches: usize);
-    fn stops(&self) -> bool;
+    fn stops(&self, s: f64) -> bool;
     fn on_segment(&mut self, mode: usize, dense: &Dense<N>);
     fn on_end(&mut self, mode: usize, s: f64, state: &State<N>);
 }
@@ -183,8 +183,8 @@ impl<O: Observer<Mode, N>, Mode: Copy + PartialEq, const N: usize> Sees<N> for T
         self.observer.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.observer.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.observer.stops(s)
     }
 
     fn on_segment(&mut self, mode: usize, dense: &Dense<N>) {
@@ -220,8 +220,8 @@ impl<const N: usize, const WANTS_SEGMENTS: bool> Observer<usize, N>
         self.0.forget(switches);
     }
 
-    fn stops(&self) -> bool {
-        self.0.stops()
+    fn stops(&self, s: f64) -> bool {
+        self.0.stops(s)
     }
 
     fn on_segment(&mut self, mode: usize, dense: &Dense<N>) {

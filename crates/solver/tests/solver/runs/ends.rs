@@ -70,7 +70,7 @@ impl Observer<(), 1> for Steps {
     fn on_segment(&mut self, (): (), _dense: &Dense<1>) {
         self.0 += 1;
     }
-    fn stops(&self) -> bool {
+    fn stops(&self, _: f64) -> bool {
         self.0 == 3
     }
 }

@@ -20,6 +20,7 @@ impl<'f, F: Family> Tracer<'f, F> {
             probed: self.probed,
             stage: self.stage.clone(),
             brackets: None,
+            surveyed: false,
         })
     }
 

@@ -21,6 +21,9 @@ pub(crate) struct State<Label, Margin> {
     /// Where the tracer has to look again, if it has explored the window and a verification
     /// disagreed.
     pub brackets: Option<Vec<[Point; 2]>>,
+    /// Whether the survey has come to its end, with a doubt, and only the margins are left.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub surveyed: bool,
 }
 
 /// The state of a family's tracer.

@@ -52,6 +52,11 @@ impl<'f, F: Family> Tracer<'f, F> {
         })
     }
 
+    /// The window that is searched.
+    pub(crate) fn window(&self) -> Window {
+        self.window
+    }
+
     /// Searches the whole window.
     ///
     /// # Errors
@@ -297,7 +302,7 @@ impl<'f, F: Family> Tracer<'f, F> {
 
 /// Whether a run between two others is as they suggest: it has the same label, and margins near the
 /// mean of their margins.
-fn is_expected<L: Eq, M: PartialEq>(
+pub(crate) fn is_expected<L: Eq, M: PartialEq>(
     a: &FreeRun<L, M>,
     middle: &FreeRun<L, M>,
     b: &FreeRun<L, M>,

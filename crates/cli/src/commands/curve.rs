@@ -1,0 +1,177 @@
+//! `curve`: special orbits over two parameters.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use serde::Deserialize;
+use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
+use stickslip_files::input::{json, source};
+use stickslip_files::output::file::OutputFile;
+use stickslip_files::output::picture::PictureFile;
+use stickslip_orbits::document::{BRANCH, CurveDocument, OrbitRecord, SpecialRecord};
+use stickslip_orbits::{BranchOptions, Orbits};
+use stickslip_plane::sealed;
+
+use crate::error::Failure;
+use crate::output::console::{counted, deliver, print};
+use crate::output::text::{self, number};
+use crate::shared::files::{picture, plotted, require_different, write_json};
+use crate::shared::orbit::{MOST_BYTES, failure};
+use crate::shared::system::{Axis, axis, place, read, title};
+
+/// Follow special orbits of a system of your own over two parameters
+#[derive(Debug, clap::Args)]
+#[command(long_about = ABOUT, after_long_help = EXAMPLES)]
+pub struct CurveArguments {
+    /// The system, a text as docs/systems.md describes it; - is standard input
+    #[arg(value_name = "SYSTEM.slip")]
+    pub system: PathBuf,
+
+    /// A branch of the system that `branch` has written
+    #[arg(long, value_name = "BRANCH.json", help_heading = "Curve")]
+    pub branch: PathBuf,
+
+    /// The kind of special orbit: the first one of the branch, or the N-th with KIND:N
+    #[arg(long, value_name = "KIND[:N]", help_heading = "Curve")]
+    pub kind: String,
+
+    /// The parameter on the horizontal axis, and its interval
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = axis, help_heading = "Curve")]
+    pub x: Axis,
+
+    /// The parameter on the vertical axis, and its interval
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = axis, help_heading = "Curve")]
+    pub y: Axis,
+
+    /// JSON file for the curve
+    #[arg(long, value_name = "CURVE.json", help_heading = "Output")]
+    pub out: Option<PathBuf>,
+
+    /// Picture of the curve in its window, with orbits that are special twice
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = picture())]
+    pub plot: Option<PictureFile>,
+}
+
+/// What is read of a branch.
+#[derive(Deserialize)]
+struct Written {
+    schema: String,
+    #[serde(default)]
+    specials: Vec<SpecialRecord>,
+}
+
+/// Follows the curve, writes what is wanted, and prints its ends and meetings.
+///
+/// # Errors
+/// The system or the branch cannot be read, options do not fit them, there is no curve, a file or
+/// standard output cannot be written, or the curve breaks off. In the last case the files are
+/// complete and say so.
+pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
+    let CurveArguments { x, y, out, plot, .. } = arguments;
+    let (out, plot) = (out.as_deref(), plot.as_ref());
+    let inputs = [("the system", Some(&*arguments.system)), ("--branch", Some(&*arguments.branch))];
+    require_different(&[("--out", out), plotted(plot)], &inputs)?;
+    plot.map_or(Ok(()), PictureFile::probe)?;
+    let file = out.map(OutputFile::create).transpose()?;
+    let (system, _) = read(&arguments.system)?;
+    let record = special(arguments)?;
+    let parameters = [place(&system, "--x", &x.name)?, place(&system, "--y", &y.name)?];
+    if parameters[0] == parameters[1] {
+        let name = &x.name;
+        return Err(Failure::Usage(format!(
+            "--x and --y are both {name}; expected two parameters"
+        )));
+    }
+    let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
+    let special = record.special(&orbits);
+    let special = special.map_err(|error| Failure::Usage(error.to_string()))?;
+    let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
+    let curve = orbits.curve(&special, parameters, window, &BranchOptions::default());
+    let curve = curve.map_err(failure)?;
+    let document = CurveDocument::new(&orbits, &title(&arguments.system), &curve);
+    let mut stored = Vec::new();
+    if let Some(file) = file {
+        stored.push(write_json(file, &document)?);
+    }
+    if let Some(plot) = plot {
+        stored.push(plot.write(Ok(picture_of(&document)))?);
+    }
+    deliver(stored, counted(curve.points.len(), "orbit", "orbits"))?;
+    print(|out| table(out, &document))?;
+    Failure::if_doubtful(out.unwrap_or(&arguments.system), "curve is", curve.objection)
+}
+
+/// The special orbit of the branch.
+fn special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
+    let path = &arguments.branch;
+    let unusable = |reason: String| Failure::input(source::shown(path), reason);
+    let text = source::read(path, MOST_BYTES)?;
+    sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
+    let Written { schema, specials } = json::parse(&text).map_err(unusable)?;
+    if schema != BRANCH {
+        return Err(unusable(format!("schema is {schema:?}; expected {BRANCH:?}")));
+    }
+    let (kind, wanted) = arguments.kind.split_once(':').unwrap_or((&arguments.kind, "1"));
+    let count = wanted.parse::<usize>().ok().and_then(|count| count.checked_sub(1));
+    let found = specials.iter().filter(|it| it.kind.name() == kind);
+    count.and_then(|count| found.clone().nth(count)).cloned().ok_or_else(|| {
+        let known: Vec<_> = specials.iter().map(|it| it.kind.name()).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Failure::Usage(format!("--kind {}: expected one of the branch: {known}", arguments.kind))
+    })
+}
+
+/// The parameters of an orbit.
+fn at(document: &CurveDocument, orbit: &OrbitRecord) -> [f64; 2] {
+    [0, 1].map(|k| orbit.parameters[&document.parameters[k]])
+}
+
+fn table(out: &mut dyn Write, document: &CurveDocument) -> io::Result<()> {
+    let [x, y] = &document.parameters;
+    let header = [document.kind.name(), x, y].map(str::to_owned);
+    let row = |name: &str, orbit: &OrbitRecord| {
+        let [x, y] = at(document, orbit);
+        [name.to_owned(), number(x), number(y)]
+    };
+    let ends = [document.points.first(), document.points.last()];
+    let ends = ends.into_iter().flatten().map(|it| row("end", it));
+    let meetings = document.meetings.iter().map(|it| row(it.kind.name(), &it.orbit));
+    text::aligned(out, &std::iter::once(header).chain(ends).chain(meetings).collect::<Vec<_>>())
+}
+
+fn picture_of(document: &CurveDocument) -> stickslip_figure::Svg {
+    let points = document.points.iter();
+    let meetings = document.meetings.iter().map(|it| SpecialPoint {
+        name: it.kind.name(),
+        at: at(document, &it.orbit),
+        behind: it.behind,
+    });
+    let kind = document.kind.name();
+    draw(&BranchCurve {
+        title: &format!("{}: {kind} of a periodic orbit", document.system),
+        axes: [&document.parameters[0], &document.parameters[1]],
+        points: points
+            .map(|it| BranchPoint { at: at(document, it), stretch: Stretch::Special })
+            .collect(),
+        specials: meetings.collect(),
+    })
+}
+
+/// What `curve --help` says first.
+const ABOUT: &str = "\
+Follow the special orbits of one kind over two parameters, from a branch: where an orbit folds, \
+flips, grazes or begins to slide. Orbits at which something else changes too are located: a fold \
+that meets a graze, and on a curve of neimark-sacker the resonances 1:1 (fold) and 1:2 (flip).
+
+Kinds branch-point and boundary have no curve.";
+
+/// What `curve --help` says last.
+const EXAMPLES: &str = "\
+Examples:
+  stickslip curve examples/orbits/oscillator.slip --branch branch.json --kind grazing \
+--x w=0.6:1.4 --y a=0.02:1 --out curve.json --plot curve.svg
+  stickslip curve examples/orbits/oscillator.slip --branch branch.json --kind flip \
+--x w=0.7:0.9 --y a=0.02:1.2
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

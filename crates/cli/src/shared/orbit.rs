@@ -1,0 +1,173 @@
+//! Where an orbit of a system is searched for.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use stickslip_expression::System;
+use stickslip_files::input::{json, number, source};
+use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord};
+use stickslip_orbits::{Guess, Orbit, OrbitError, Orbits};
+use stickslip_plane::sealed;
+
+use super::system::{place as parameter, read, setting, time, title, values};
+use crate::error::Failure;
+
+/// The orbit of a system.
+#[derive(Debug, clap::Args)]
+pub struct GuessArguments {
+    /// The system, a text as docs/systems.md describes it; - is standard input
+    #[arg(value_name = "SYSTEM.slip")]
+    pub system: PathBuf,
+
+    /// The value of a parameter; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "System")]
+    pub set: Vec<(String, f64)>,
+
+    /// The rules that end the segments of the orbit, in order
+    #[arg(long, value_name = "RULE,RULE,…", value_delimiter = ',', help_heading = "Guess")]
+    #[arg(required_unless_present_any = ["settle", "near"])]
+    pub itinerary: Vec<String>,
+
+    /// The orbit to which a run has settled after this time, instead of --itinerary
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(help_heading = "Guess", conflicts_with = "itinerary")]
+    pub settle: Option<f64>,
+
+    /// The orbit near that of a file of `orbit`, or near the last one of a file of `branch`,
+    /// instead of --itinerary; parameters that are not set are those of the file
+    #[arg(long, value_name = "FILE.json", help_heading = "Guess")]
+    #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
+    pub near: Option<PathBuf>,
+
+    /// The value of a component at the start, instead of that of the system; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Guess")]
+    pub start: Vec<(String, f64)>,
+
+    /// The mode at the start, instead of that of the system
+    #[arg(long, value_name = "MODE", help_heading = "Guess")]
+    pub mode: Option<String>,
+
+    /// The time at the start, instead of that of the system
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(help_heading = "Guess")]
+    pub time: Option<f64>,
+
+    /// The durations of the segments; otherwise each is up to where its rule acts
+    #[arg(long, value_name = "T,T,…", value_delimiter = ',', value_parser = number::parse_option)]
+    #[arg(help_heading = "Guess", conflicts_with = "settle", allow_hyphen_values = true)]
+    pub durations: Option<Vec<f64>>,
+}
+
+/// What is read of a file of orbits.
+#[derive(Deserialize)]
+struct Written {
+    schema: String,
+    orbit: Option<OrbitRecord>,
+    points: Option<Vec<OrbitRecord>>,
+}
+
+/// Largest number of bytes of a file.
+pub const MOST_BYTES: u64 = 1 << 30;
+
+/// An orbit that was found, with its system.
+#[derive(Debug)]
+pub struct FoundOrbit {
+    /// The name of the system in titles.
+    pub name: String,
+    /// The orbits of the system.
+    pub orbits: Orbits,
+    /// The orbit.
+    pub orbit: Orbit,
+}
+
+impl GuessArguments {
+    /// Finds the orbit.
+    ///
+    /// # Errors
+    /// [`Failure`]: the system cannot be read, options do not fit it, or there is no orbit.
+    pub fn find(&self) -> Result<FoundOrbit, Failure> {
+        let (system, _) = read(&self.system)?;
+        if let Some(path) = &self.near {
+            return self.near(&system, path);
+        }
+        let parameters = values(&system, &self.set)?;
+        let mode = self.mode.as_deref().map(|name| place(&system, name)).transpose()?;
+        let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
+        let state = self.state(&system, &parameters)?;
+        let itinerary: Vec<&str> = self.itinerary.iter().map(String::as_str).collect();
+        let guess = Guess {
+            mode,
+            time: self.time,
+            state: state.as_deref(),
+            itinerary: &itinerary,
+            durations: self.durations.as_deref(),
+        };
+        let orbit = match self.settle {
+            Some(time) => orbits.settled(&parameters, &guess, time),
+            None => orbits.find(&parameters, &guess),
+        };
+        let orbit = orbit.map_err(failure)?;
+        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
+    }
+
+    /// The orbit near that of a file.
+    fn near(&self, system: &System, path: &Path) -> Result<FoundOrbit, Failure> {
+        let shown = source::shown(path);
+        let unusable = |reason: String| Failure::input(shown, reason);
+        let text = source::read(path, MOST_BYTES)?;
+        sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
+        let written: Written = json::parse(&text).map_err(unusable)?;
+        let record = match (&*written.schema, written.orbit, written.points) {
+            (ORBIT, Some(orbit), _) => Some(orbit),
+            (BRANCH, _, Some(mut points)) => points.pop(),
+            _ => None,
+        };
+        let expected = format!("expected an orbit in the layout {ORBIT:?} or {BRANCH:?}");
+        let record = record.ok_or_else(|| unusable(expected))?;
+        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
+        let orbit = record.orbit(&orbits).map_err(failure)?;
+        let mut parameters = orbit.parameters.clone();
+        for (name, value) in &self.set {
+            parameters[parameter(system, "--set", name)?] = *value;
+        }
+        let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
+        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
+    }
+
+    /// The state at the start, if some component has another value than the system says.
+    fn state(&self, system: &System, parameters: &[f64]) -> Result<Option<Vec<f64>>, Failure> {
+        if self.start.is_empty() {
+            return Ok(None);
+        }
+        let runnable =
+            system.with(parameters).map_err(|error| Failure::Usage(error.to_string()))?;
+        let mut state = runnable.start().state.to_vec();
+        for (name, value) in &self.start {
+            let place = system.components.iter().position(|it| it.name == *name);
+            let names: Vec<_> = system.components.iter().map(|it| it.name.as_str()).collect();
+            let unknown = || {
+                let known = names.join(", ");
+                Failure::Usage(format!("--start {name}: the state has {known}"))
+            };
+            state[place.ok_or_else(unknown)?] = *value;
+        }
+        Ok(Some(state))
+    }
+}
+
+/// Why there is no orbit, as the program says it.
+pub fn failure(error: OrbitError) -> Failure {
+    match error {
+        OrbitError::Value(error) => Failure::Usage(error.to_string()),
+        error => Failure::Orbit(error),
+    }
+}
+
+/// The place of a mode.
+fn place(system: &System, name: &str) -> Result<usize, Failure> {
+    let place = system.modes.iter().position(|it| it.name == *name);
+    place.ok_or_else(|| {
+        let names: Vec<_> = system.modes.iter().map(|it| it.name.as_str()).collect();
+        Failure::Usage(format!("--mode {name}: expected one of {}", names.join(", ")))
+    })
+}

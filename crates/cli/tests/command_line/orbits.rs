@@ -1,0 +1,120 @@
+//! Periodic orbits of systems that are texts.
+
+use serde_json::Value;
+
+use crate::{Workspace, rows};
+
+const BALL: &str = "parameter a = 0.02, r = 0.7\nstate x = 0.015, v = 0.5, phase = 0.8\n\
+                    table = a*sin(phase)\nx' = v\nv' = -1\nphase' = 2*pi\n\
+                    when x < table \"bounce\"\n  x := table\n  v := (1 + r)*table' - r*v\n\
+                    when phase > 2*pi \"period\"\n  phase := phase - 2*pi\nend = 20\n";
+
+#[test]
+fn an_orbit_is_found_and_written() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL);
+    let ran = directory.run(
+        "orbit ball.slip --itinerary period,bounce --out orbit.json --plot orbit.svg --format json",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let orbit = &found["orbit"];
+    assert_eq!(found["schema"], "stickslip.orbit/1");
+    assert_eq!((&orbit["admissible"], &orbit["stable"]), (&true.into(), &true.into()));
+    assert!((orbit["period"].as_f64().unwrap() - 1.0).abs() < 1e-13);
+    // cos φ = T(1 − r)/(2(1 + r)Aω), and the product of the multipliers is r².
+    let phase = orbit["segments"][0]["state"][2].as_f64().unwrap();
+    let cos: f64 = 0.3 / (2.0 * 1.7 * 0.02 * std::f64::consts::TAU);
+    assert!((phase - cos.acos()).abs() < 1e-11);
+    let written: Value = serde_json::from_str(&directory.read("orbit.json")).unwrap();
+    assert_eq!(written["orbit"], found["orbit"]);
+    assert!(written["digests"]["orbit"].is_string());
+    assert!(directory.read("orbit.svg").starts_with("<svg"));
+    // A run settles to the same orbit.
+    let settled = directory.run("orbit ball.slip --settle 100");
+    assert_eq!(settled.code, 0, "{}", settled.stderr);
+    assert!(settled.stdout.contains("followed by the system  yes"), "{}", settled.stdout);
+    assert!(settled.stdout.contains("period                  1.000000000"), "{}", settled.stdout);
+}
+
+#[test]
+fn a_branch_is_followed_and_written() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL);
+    let ran = directory.run(
+        "branch ball.slip --itinerary period,bounce --over a=0.005:0.05 --out branch.json \
+         --table branch.csv --plot branch.svg --show v",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(ran.stdout.contains("fold"), "{}", ran.stdout);
+    let written: Value = serde_json::from_str(&directory.read("branch.json")).unwrap();
+    assert_eq!(written["schema"], "stickslip.orbit-branch/1");
+    let specials = written["specials"].as_array().unwrap();
+    let flip = specials.iter().find(|it| it["kind"] == "flip").expect("a flip");
+    assert!((flip["value"].as_f64().unwrap() - 0.029654967002).abs() < 1e-11);
+    let table = rows(&directory.read("branch.csv"));
+    assert_eq!(table[0][..6].join(","), "a,special,period,stable,followed,multiplier");
+    let points = written["points"].as_array().unwrap().len();
+    assert_eq!(table.len(), 1 + points + specials.len());
+    // The flip over two parameters: Aω² sin φ = 2(1 + r²)/(1 + r)².
+    let curve = directory.run(
+        "curve ball.slip --branch branch.json --kind flip --x r=0.6:0.8 --y a=0.01:0.06 \
+         --out curve.json --plot curve.svg",
+    );
+    assert_eq!(curve.code, 0, "{}", curve.stderr);
+    let curve: Value = serde_json::from_str(&directory.read("curve.json")).unwrap();
+    assert_eq!(curve["schema"], "stickslip.orbit-curve/1");
+    let points = curve["points"].as_array().unwrap();
+    assert!(points.len() > 5);
+    for point in points {
+        let [r, a] = ["r", "a"].map(|name| point["parameters"][name].as_f64().unwrap());
+        let w = std::f64::consts::TAU;
+        let cos = (1.0 - r) / (2.0 * (1.0 + r)) / w;
+        let sin = 2.0 * (1.0 + r * r) / (1.0 + r).powi(2) / (w * w);
+        assert!((a - cos.hypot(sin)).abs() < 1e-11, "{r} {a}");
+    }
+    let unknown = directory
+        .run("curve ball.slip --branch branch.json --kind graze --x r=0.6:0.8 --y a=0.01:0.06");
+    assert_eq!(unknown.code, 2, "{}", unknown.stderr);
+    assert!(unknown.stderr.contains("--kind graze: expected one of the branch"));
+    // It goes on from its last orbit.
+    let near = directory.run("orbit ball.slip --near branch.json --set a=0.048 --format json");
+    assert_eq!(near.code, 0, "{}", near.stderr);
+    let near: Value = serde_json::from_str(&near.stdout).unwrap();
+    assert_eq!(near["orbit"]["parameters"]["a"], 0.048);
+    let damaged = directory.read("branch.json").replacen("\"period\":1.0", "\"period\":1.1", 1);
+    directory.write("damaged.json", &damaged);
+    let refused = directory.run("orbit ball.slip --near damaged.json");
+    assert_eq!(refused.code, 2, "{}", refused.stderr);
+    let picture = directory.read("branch.svg");
+    assert!(picture.contains("stable") && picture.contains("flip") && picture.contains("fold"));
+}
+
+#[test]
+fn what_has_no_orbit_is_refused() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL);
+    for (arguments, code, said) in [
+        ("orbit ball.slip", 2, "--itinerary"),
+        ("orbit ball.slip --itinerary bonce", 2, "a rule of mode main, which has bounce, period"),
+        ("orbit ball.slip --itinerary period --mode up", 2, "--mode up: expected one of main"),
+        (
+            "orbit ball.slip --itinerary period --start y=1",
+            2,
+            "--start y: the state has x, v, phase",
+        ),
+        ("orbit ball.slip --itinerary period --set b=1", 2, "--set b: the system has no such"),
+        ("orbit ball.slip --settle 0.5", 1, "the run does not settle"),
+        ("branch ball.slip --itinerary period,bounce --over b=0:1", 2, "--over b"),
+        ("branch ball.slip --itinerary period,bounce --over a=1:2", 2, "a = 0.02 is out of range"),
+        (
+            "branch ball.slip --itinerary period,bounce --over a=0:1 --longest-step 2",
+            2,
+            "1e-7 to 1",
+        ),
+    ] {
+        let ran = directory.run(arguments);
+        assert_eq!(ran.code, code, "{arguments}: {}", ran.stderr);
+        assert!(ran.stderr.contains(said), "{arguments}: {}", ran.stderr);
+    }
+}

@@ -1,0 +1,246 @@
+//! Where a system begins or ceases to follow the orbits of a branch.
+
+use stickslip_expression::{Formula, Graph, Inputs, Program, Rule, Trigger, Variable};
+use stickslip_solver::{Direction, EmbeddedPair};
+
+use super::point::{Along, Point};
+use super::{SpecialKind, SpecialOrbit};
+use crate::equations::Equations;
+use crate::error::OrbitError;
+use crate::itinerary::{Leg, modes_after};
+use crate::orbit::{Obstacle, Verdict};
+
+/// Halvings of a step before a function is sought that changes its sign.
+const COARSE: usize = 6;
+/// Halvings of a step, at most.
+const FINE: usize = 44;
+
+impl Along<'_> {
+    /// Where the verdict changes between two neighbours, unless a special orbit is found there.
+    pub fn change(
+        &self,
+        from: &Point,
+        to: &Point,
+        length: f64,
+        found: &[(f64, SpecialOrbit)],
+    ) -> Result<Option<(f64, SpecialOrbit)>, OrbitError> {
+        let begins = from.orbit.is_admissible();
+        if begins == to.orbit.is_admissible() {
+            return Ok(None);
+        }
+        let (mut low, mut high) = (0.0, length);
+        let [mut low_point, mut high_point] = [from.clone(), to.clone()];
+        let narrow = 1e-13 * length;
+        for round in 0..FINE {
+            let explained = found.iter().any(|(at, special)| {
+                special.segment.is_some() && (low - narrow..=high + narrow).contains(at)
+            });
+            if round >= COARSE {
+                if explained {
+                    return Ok(None);
+                }
+                let virtual_side = if begins { &high_point } else { &low_point };
+                if round == COARSE
+                    && let Some(special) =
+                        self.named(from, [(low, &low_point), (high, &high_point)], virtual_side)
+                {
+                    return Ok(Some(special));
+                }
+            }
+            if high - low <= narrow {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            let point = self.ahead(from, middle)?;
+            if point.orbit.is_admissible() == begins {
+                (low, low_point) = (middle, point);
+            } else {
+                (high, high_point) = (middle, point);
+            }
+        }
+        let special = self.special(SpecialKind::Boundary, None, None, high_point);
+        Ok(Some((high, special)))
+    }
+
+    /// The special orbit between two points, if a function for what stands against the orbit
+    /// changes its sign there.
+    fn named(
+        &self,
+        from: &Point,
+        [(low, low_point), (high, high_point)]: [(f64, &Point); 2],
+        beyond: &Point,
+    ) -> Option<(f64, SpecialOrbit)> {
+        let Verdict::Virtual(obstacle) = &beyond.orbit.verdict else { return None };
+        for (kind, segment, rule, margin) in self.margins(from, obstacle) {
+            let values = (self.margin(&margin, low_point), self.margin(&margin, high_point));
+            let (Some(one), Some(other)) = values else { continue };
+            if (one < 0.0) == (other < 0.0) {
+                continue;
+            }
+            let zero =
+                self.zero(low_point, (high - low, one, other), |it| self.margin(&margin, it));
+            // The tangent at the point below is not that at the start of the step.
+            if let Ok(Some((at, point))) = zero {
+                return Some((low + at, self.special(kind, Some(segment), rule, point)));
+            }
+        }
+        None
+    }
+
+    /// The functions that may change their sign where an obstacle begins.
+    fn margins(
+        &self,
+        from: &Point,
+        obstacle: &Obstacle,
+    ) -> Vec<(SpecialKind, usize, Option<usize>, Margin)> {
+        let legs = self.equations.legs();
+        let slides = |leg: Leg, point: &Point, segment: usize| {
+            let own = leg.rule(&self.orbits.system);
+            let (above, below) = modes_after(own, leg.mode);
+            let segments = &point.orbit.segments[segment];
+            let s = point.orbit.start;
+            [above, below].into_iter().any(|next| {
+                next != leg.mode
+                    && [&segments.state, &segments.end].into_iter().all(|state| {
+                        let leg = Leg { next, ..leg };
+                        let parameters = &point.orbit.parameters;
+                        let event =
+                            Equations::event(&self.orbits.system, leg, parameters, (s, state));
+                        event.slides_behind()
+                    })
+            })
+        };
+        match *obstacle {
+            Obstacle::Acts { segment, rule, .. } => {
+                let previous = segment.checked_sub(1).unwrap_or(legs.len() - 1);
+                let leg = Leg { rule, ..legs[segment] };
+                let inner = if slides(leg, from, segment) {
+                    SpecialKind::GrazingSliding
+                } else if from.evaluation.ends[previous].event.slides_behind() {
+                    SpecialKind::AddingSliding
+                } else {
+                    SpecialKind::Grazing
+                };
+                let corner = SpecialKind::CornerCollision;
+                vec![
+                    (inner, segment, Some(rule), Margin::Inner { segment, rule }),
+                    (corner, segment, Some(rule), Margin::AtEnd { segment, rule }),
+                    (corner, segment, Some(rule), Margin::AtStart { segment, rule }),
+                ]
+            }
+            Obstacle::Branches { segment, .. } => {
+                let own = from.evaluation.ends[segment].event.slides_behind();
+                let (above, below) =
+                    modes_after(legs[segment].rule(&self.orbits.system), legs[segment].mode);
+                let other = if legs[segment].next == above { below } else { above };
+                let slides = slides(Leg { next: other, ..legs[segment] }, from, segment);
+                let kind =
+                    if own || slides { SpecialKind::SlidingEdge } else { SpecialKind::Choice };
+                vec![(kind, segment, Some(legs[segment].rule), Margin::Choice { segment })]
+            }
+            Obstacle::Backwards { segment } => {
+                let kind = SpecialKind::VanishingSegment;
+                vec![(kind, segment, Some(legs[segment].rule), Margin::Duration { segment })]
+            }
+            Obstacle::Idle { .. } => Vec::new(),
+        }
+    }
+
+    /// A function that is positive where there is no obstacle, if it has a value.
+    pub fn margin(&self, margin: &Margin, point: &Point) -> Option<f64> {
+        let orbit = &point.orbit;
+        match *margin {
+            Margin::Choice { segment } => Some(point.evaluation.ends[segment].event.choice),
+            Margin::Duration { segment } => Some(orbit.segments[segment].duration),
+            Margin::AtEnd { segment, rule } => {
+                let s: f64 = orbit.segments[..=segment].iter().map(|it| it.duration).sum();
+                self.condition(
+                    point,
+                    (segment, rule),
+                    (orbit.start + s, &orbit.segments[segment].end),
+                )
+            }
+            Margin::AtStart { segment, rule } => {
+                let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
+                let state = &orbit.segments[segment].state;
+                self.condition(point, (segment, rule), (orbit.start + s, state))
+            }
+            Margin::Inner { segment, rule } => self.least_extremum(point, (segment, rule)),
+        }
+    }
+
+    /// The condition of a rule of the mode of a segment, so that it acts as it falls.
+    fn condition(
+        &self,
+        point: &Point,
+        (segment, rule): (usize, usize),
+        (s, state): (f64, &[f64]),
+    ) -> Option<f64> {
+        let system = &self.orbits.system;
+        let mode = self.equations.legs()[segment].mode;
+        let Trigger::When(guard, direction) = system.modes[mode].rules[rule].trigger else {
+            return None;
+        };
+        let components = system.components.len();
+        let inputs = Inputs { components, parameters: system.parameters.len(), fixed: true };
+        let program = Program::compile(&system.graph, &[guard], inputs);
+        let mut value = [f64::NAN];
+        program.with(&point.orbit.parameters).run(s, state, &mut value);
+        Some(if direction == Direction::Rising { -value[0] } else { value[0] })
+    }
+
+    /// The least extremum of the condition of a rule inside a segment. The extrema are events of
+    /// its rate, which bounds decide.
+    fn least_extremum(&self, point: &Point, (segment, rule): (usize, usize)) -> Option<f64> {
+        let leg = self.equations.legs()[segment];
+        let mut alone = self.orbits.system.clone();
+        let Trigger::When(guard, direction) = alone.modes[leg.mode].rules[rule].trigger else {
+            return None;
+        };
+        let slopes = alone.modes[leg.mode].slopes.clone();
+        let rate = rate(&mut alone.graph, guard, &slopes);
+        let extremum = Rule::new(Trigger::When(rate, Direction::Either));
+        alone.modes[leg.mode].rules = vec![extremum];
+        let orbit = &point.orbit;
+        let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
+        let own = &orbit.segments[segment];
+        let start = orbit.start + s;
+        let runnable = alone.with(&orbit.parameters).ok()?;
+        let runnable = runnable.starting(Some(leg.mode), Some(start), Some(&own.state)).ok()?;
+        let mut events = Vec::new();
+        let end = start + own.duration;
+        let run = runnable.events(EmbeddedPair::Dop853, end, &self.orbits.options, &mut events);
+        let _ = run.ok()?;
+        let at_start = self.condition(point, (segment, rule), (start, &own.state))?;
+        // What acts in both directions acts from the side on which the segment is.
+        let turned = direction == Direction::Either && at_start < 0.0;
+        let sign = if turned { -1.0 } else { 1.0 };
+        let values = events
+            .iter()
+            .filter_map(|event| self.condition(point, (segment, rule), (event.s, &event.before)));
+        values.map(|value| sign * value).min_by(f64::total_cmp)
+    }
+}
+
+/// A function along a branch that changes its sign where an obstacle begins.
+pub(super) enum Margin {
+    /// The least extremum of a rule's condition inside a segment.
+    Inner { segment: usize, rule: usize },
+    /// The condition at the end of a segment.
+    AtEnd { segment: usize, rule: usize },
+    /// The condition at its start.
+    AtStart { segment: usize, rule: usize },
+    /// What chooses the mode behind a segment.
+    Choice { segment: usize },
+    /// The duration of a segment.
+    Duration { segment: usize },
+}
+
+/// The rate of a formula along slopes.
+fn rate(graph: &mut Graph, formula: Formula, slopes: &[Formula]) -> Formula {
+    graph.slope(formula, &mut |graph, variable| match variable {
+        Variable::Time => graph.constant(1.0),
+        Variable::Component(place) => slopes[place as usize],
+        Variable::Parameter(_) => graph.constant(0.0),
+    })
+}

@@ -1,0 +1,98 @@
+//! Special orbits between two points of a branch.
+
+use super::point::{Along, Point};
+use super::test::Test;
+use super::{SpecialKind, SpecialOrbit};
+use crate::error::OrbitError;
+
+/// A bracket of this part of a step is a place.
+const NARROW: f64 = 1e-13;
+/// The greatest number of points of a search.
+const ROUNDS: usize = 100;
+
+impl Along<'_> {
+    /// The special orbits between two neighbours, in order.
+    pub fn specials(&self, from: &Point, to: &Point) -> Result<Vec<SpecialOrbit>, OrbitError> {
+        let length = from.tangent.dot(&(&to.place - &from.place));
+        let mut found: Vec<(f64, SpecialOrbit)> = Vec::new();
+        for test in Test::all(self, from) {
+            let values = (test.value(self, from), test.value(self, to));
+            let (Some(one), Some(other)) = values else { continue };
+            // A zero at the end belongs to the next step.
+            if (one < 0.0) == (other < 0.0) || other == 0.0 {
+                continue;
+            }
+            let zero = self.zero(from, (length, one, other), |point| test.value(self, point))?;
+            let Some((at, point)) = zero else { continue };
+            if let Some((kind, segment)) = test.kind(from, &point) {
+                let rule = segment.map(|segment| self.equations.legs()[segment].rule);
+                found.push((at, self.special(kind, segment, rule, point)));
+            }
+        }
+        if let Some((at, special)) = self.change(from, to, length, &found)? {
+            found.push((at, special));
+        }
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Ok(found.into_iter().map(|(_, special)| special).collect())
+    }
+
+    pub(super) fn special(
+        &self,
+        kind: SpecialKind,
+        segment: Option<usize>,
+        rule: Option<usize>,
+        point: Point,
+    ) -> SpecialOrbit {
+        let value = self.value(&point.place);
+        SpecialOrbit { kind, value, behind: 0, segment, rule, orbit: point.orbit }
+    }
+
+    /// Where a function changes its sign from `one` at a point to `other` ahead by a length.
+    pub(super) fn zero(
+        &self,
+        from: &Point,
+        signs: (f64, f64, f64),
+        function: impl Fn(&Point) -> Option<f64>,
+    ) -> Result<Option<(f64, Point)>, OrbitError> {
+        zero(signs, |at| {
+            let point = self.ahead(from, at)?;
+            Ok(function(&point).map(|value| (value, point)))
+        })
+    }
+}
+
+/// Where a function changes its sign from `one` to `other` within a length, with what it is
+/// computed from: by false position in the manner of Illinois. `None` if the function ceases between.
+pub(super) fn zero<T>(
+    (length, one, other): (f64, f64, f64),
+    mut function: impl FnMut(f64) -> Result<Option<(f64, T)>, OrbitError>,
+) -> Result<Option<(f64, T)>, OrbitError> {
+    let (mut low, mut high) = ((0.0, one), (length, other));
+    let mut side = 0;
+    let mut last: Option<(f64, T)> = None;
+    for _ in 0..ROUNDS {
+        let part = low.1 / (low.1 - high.1);
+        let part = if part > 0.0 && part < 1.0 { part } else { 0.5 };
+        let at = low.0 + part * (high.0 - low.0);
+        let Some((value, found)) = function(at)? else { return Ok(None) };
+        let before = last.replace((at, found)).map(|(at, _)| at);
+        let stays = before.is_some_and(|before| (at - before).abs() <= NARROW * length);
+        if value == 0.0 || stays || (high.0 - low.0).abs() <= NARROW * length {
+            break;
+        }
+        if (value < 0.0) == (low.1 < 0.0) {
+            low = (at, value);
+            if side == -1 {
+                high.1 *= 0.5;
+            }
+            side = -1;
+        } else {
+            high = (at, value);
+            if side == 1 {
+                low.1 *= 0.5;
+            }
+            side = 1;
+        }
+    }
+    Ok(last)
+}

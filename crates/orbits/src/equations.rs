@@ -1,0 +1,480 @@
+//! The equations of an orbit with a prescribed itinerary, and their derivatives.
+//!
+//! Segment i has the unknown state xᵢ at its start and the unknown duration Tᵢ; φᵢ is the smooth
+//! flow of its mode, gᵢ the condition of the rule that ends it, and Rᵢ what the rule changes:
+//!
+//!   gᵢ(φᵢ(xᵢ, Tᵢ)) = 0,  xᵢ₊₁ = Rᵢ(φᵢ(xᵢ, Tᵢ)), the last one followed by the first.
+//!
+//! The time at the start is the last unknown. It stays where it is, unless time is explicit: then
+//! the durations together are a multiple of a clock's period. All of this is smooth where an orbit
+//! grazes, where a return map is not. Derivatives come from the variational equations.
+
+mod event;
+mod flow;
+
+use nalgebra::{DMatrix, DVector};
+use stickslip_expression::{
+    Formula, Graph, Inputs, InvalidValue, Next, Program, System, Trigger, Variable,
+};
+use stickslip_solver::{GivenValue, Options};
+
+use crate::error::OrbitError;
+use crate::itinerary::{Leg, require_of};
+pub(crate) use event::Event;
+use event::{EventFormulas, by_each};
+use flow::{Flow, Flown};
+
+/// The unknowns of an orbit.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Draft {
+    pub parameters: Vec<f64>,
+    pub start: f64,
+    pub legs: Vec<Leg>,
+    pub states: Vec<Vec<f64>>,
+    pub durations: Vec<f64>,
+}
+
+impl Draft {
+    pub fn period(&self) -> f64 {
+        self.durations.iter().sum()
+    }
+
+    /// The times at the starts of the segments.
+    pub fn starts(&self) -> Vec<f64> {
+        let starts = self.durations.iter().scan(self.start, |s, duration| {
+            let own = *s;
+            *s += duration;
+            Some(own)
+        });
+        starts.collect()
+    }
+}
+
+/// The equations of an itinerary. Places are unknowns of size 1: those of a [`Draft`] over their
+/// sizes in the first one, and behind them the active parameters over theirs.
+#[derive(Clone, Debug)]
+pub(crate) struct Equations {
+    n: usize,
+    legs: Vec<Leg>,
+    active: Vec<usize>,
+    parameters: Vec<f64>,
+    flows: Vec<Flow>,
+    events: Vec<EventFormulas>,
+    /// The period of a clock and its derivatives by parameters, and how often it ticks.
+    clock: Option<(Program, f64)>,
+    /// Components that need not come back: nothing changes them, or nothing else reads them.
+    apart: Vec<bool>,
+    /// The first draft.
+    anchor: Draft,
+    sizes: DVector<f64>,
+    /// The sizes of equations.
+    rows: DVector<f64>,
+    options: Options,
+}
+
+/// The equations at a place.
+#[derive(Clone, Debug)]
+pub(crate) struct Evaluation {
+    /// What has to vanish.
+    pub values: DVector<f64>,
+    /// Its derivatives by the unknowns, and by active parameters in further columns.
+    pub slopes: DMatrix<f64>,
+    /// The ends of the segments.
+    pub ends: Vec<End>,
+}
+
+/// The end of a segment.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    pub flown: Flown,
+    pub event: Event,
+}
+
+impl Equations {
+    /// The equations of the itinerary of a draft, in which some parameters are unknown too. Each
+    /// of those has a size.
+    ///
+    /// # Errors
+    /// [`OrbitError`]: the itinerary is too long, or time is explicit and nothing says its period.
+    pub fn new(
+        system: &System,
+        anchor: Draft,
+        active: &[(usize, f64)],
+        options: &Options,
+    ) -> Result<Self, OrbitError> {
+        let (n, m) = (system.components.len(), anchor.legs.len());
+        require_of(system, &anchor.legs, &anchor.states)?;
+        let legs = anchor.legs.clone();
+        let mut graph = system.graph.clone();
+        let places: Vec<usize> = active.iter().map(|(place, _)| *place).collect();
+        let graph = &mut graph;
+        let ticks = ticks(system, &anchor)?;
+        let clock = clock(graph, system, &legs, &places)?;
+        let flows = legs.iter().map(|leg| Flow::new(graph, system, leg.mode, &places)).collect();
+        let event = |(leg, tick): (&Leg, &Option<f64>)| {
+            EventFormulas::new(graph, system, *leg, *tick, &places)
+        };
+        let events = legs.iter().zip(&ticks).map(event).collect();
+        let apart = (0..n).map(|place| is_apart(system, &legs, place)).collect();
+        let sizes = sizes(&anchor, active);
+        let least = sizes.rows(0, n).iter().fold(f64::INFINITY, |least, size| least.min(*size));
+        let options = Options { atol: options.rtol * 0.1 * least, ..*options };
+        let parameters = anchor.parameters.clone();
+        let rows = DVector::from_element(m * (n + 1) + 1, 1.0);
+        let mut equations = Self {
+            n,
+            legs,
+            active: places,
+            parameters,
+            flows,
+            events,
+            clock,
+            apart,
+            anchor,
+            sizes,
+            rows,
+            options,
+        };
+        equations.measure_rows(system)?;
+        Ok(equations)
+    }
+
+    /// What happens where a rule acts.
+    pub fn event(
+        system: &System,
+        leg: Leg,
+        parameters: &[f64],
+        (s, state): (f64, &[f64]),
+    ) -> Event {
+        let mut graph = system.graph.clone();
+        EventFormulas::new(&mut graph, system, leg, None, &[]).at(parameters, s, state)
+    }
+
+    /// The number of unknowns without parameters.
+    pub fn count(&self) -> usize {
+        self.legs.len() * (self.n + 1) + 1
+    }
+
+    /// The segments.
+    pub fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
+    /// The segment of an unknown.
+    pub fn segment_of(&self, unknown: usize) -> usize {
+        let states = self.legs.len() * self.n;
+        match unknown.checked_sub(states) {
+            None => unknown / self.n,
+            Some(duration) => duration.min(self.legs.len() - 1),
+        }
+    }
+
+    /// The place of a draft.
+    pub fn place(&self, draft: &Draft) -> DVector<f64> {
+        let states = draft.states.iter().flatten().copied();
+        let parameters = self.active.iter().map(|&place| draft.parameters[place]);
+        let all = states.chain(draft.durations.iter().copied()).chain([draft.start]);
+        let all: Vec<f64> = all.chain(parameters).collect();
+        DVector::from_vec(all).component_div(&self.sizes)
+    }
+
+    /// The draft at a place.
+    pub fn draft(&self, place: &DVector<f64>) -> Draft {
+        let (n, m) = (self.n, self.legs.len());
+        let all = place.component_mul(&self.sizes.rows(0, place.len()));
+        let all = all.as_slice();
+        let mut parameters = self.parameters.clone();
+        for (&own, value) in self.active.iter().zip(&all[self.count()..]) {
+            parameters[own] = *value;
+        }
+        Draft {
+            parameters,
+            start: all[m * (n + 1)],
+            legs: self.legs.clone(),
+            states: (0..m).map(|i| all[n * i..n * (i + 1)].to_vec()).collect(),
+            durations: all[m * n..m * (n + 1)].to_vec(),
+        }
+    }
+
+    /// The equations at a place.
+    ///
+    /// # Errors
+    /// [`OrbitError::Run`].
+    pub fn at(&self, place: &DVector<f64>) -> Result<Evaluation, OrbitError> {
+        let (n, m, count) = (self.n, self.legs.len(), self.count());
+        let draft = self.draft(place);
+        let parameters = &draft.parameters;
+        let mut values = DVector::zeros(count);
+        let mut slopes = DMatrix::zeros(count, count + self.active.len());
+        let mut ends = Vec::with_capacity(m);
+        for (i, s) in draft.starts().into_iter().enumerate() {
+            let duration = draft.durations[i];
+            let flown =
+                self.flows[i].run(parameters, (s, &draft.states[i]), duration, &self.options);
+            let flown = flown.map_err(|error| OrbitError::Run { segment: i, error })?;
+            let event = self.events[i].at(parameters, s + duration, &flown.state);
+            let next = (i + 1) % m;
+            for k in 0..n {
+                let row = next * n + k;
+                if next == 0 && self.apart[k] {
+                    values[row] = draft.states[0][k] - self.anchor.states[0][k];
+                    slopes[(row, k)] += 1.0;
+                    continue;
+                }
+                values[row] = draft.states[next][k] - event.after[k];
+                slopes[(row, row)] += 1.0;
+                let own: DVector<f64> = event.after_by.row(k).transpose();
+                self.add(&mut slopes, (row, i), (-1.0, &own), (&flown, &event));
+            }
+            values[m * n + i] = event.guard;
+            let own = event.guard_by.clone();
+            self.add(&mut slopes, (m * n + i, i), (1.0, &own), (&flown, &event));
+            ends.push(End { flown, event });
+        }
+        self.close(&draft, &mut values, &mut slopes);
+        for (column, &size) in self.sizes.iter().enumerate().take(slopes.ncols()) {
+            slopes.column_mut(column).scale_mut(size);
+        }
+        for (row, &size) in self.rows.iter().enumerate() {
+            values[row] /= size;
+            slopes.row_mut(row).unscale_mut(size);
+        }
+        Ok(Evaluation { values, slopes, ends })
+    }
+
+    /// Adds to a row what a quantity at the end of segment `i` changes by, whose derivatives by
+    /// state, time and parameters there are `by`.
+    fn add(
+        &self,
+        slopes: &mut DMatrix<f64>,
+        (row, i): (usize, usize),
+        (sign, by): (f64, &DVector<f64>),
+        (flown, event): (&Flown, &Event),
+    ) {
+        let (n, states, count) = (self.n, self.legs.len() * self.n, self.count());
+        let along = by.rows(0, n);
+        let mut add = |column: usize, value: f64| slopes[(row, column)] += sign * value;
+        for k in 0..n {
+            add(n * i + k, along.dot(&flown.by.column(k)));
+        }
+        add(states + i, along.dot(&event.slopes) + by[n]);
+        // A later start moves the whole segment.
+        let later = along.dot(&flown.by.column(n)) + by[n];
+        for before in 0..i {
+            add(states + before, later);
+        }
+        add(count - 1, later);
+        for parameter in 0..self.active.len() {
+            let own = along.dot(&flown.by.column(n + 1 + parameter)) + by[n + 1 + parameter];
+            add(count + parameter, own);
+        }
+    }
+
+    /// The equation of time.
+    fn close(&self, draft: &Draft, values: &mut DVector<f64>, slopes: &mut DMatrix<f64>) {
+        let (states, count) = (self.legs.len() * self.n, self.count());
+        let row = count - 1;
+        let Some((program, ticks)) = &self.clock else {
+            values[row] = draft.start - self.anchor.start;
+            slopes[(row, row)] = 1.0;
+            return;
+        };
+        let mut period = vec![f64::NAN; 1 + self.active.len()];
+        program.with(&draft.parameters).run(f64::NAN, &[], &mut period);
+        values[row] = draft.period() - ticks * period[0];
+        for i in 0..self.legs.len() {
+            slopes[(row, states + i)] = 1.0;
+        }
+        for (parameter, by) in period[1..].iter().enumerate() {
+            slopes[(row, count + parameter)] = -ticks * by;
+        }
+    }
+
+    /// The derivatives by the unknowns for a solution that comes back `factor` times as large: they
+    /// are singular where that is a multiplier. Nothing is divided by the rate of a condition, so
+    /// that they exist at grazes.
+    pub fn returning(&self, slopes: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
+        let count = self.count();
+        let mut own = slopes.columns(0, count).into_owned();
+        for k in (0..self.n).filter(|k| !self.apart[*k]) {
+            own[(k, k)] += (factor - 1.0) * self.sizes[k] / self.rows[k];
+        }
+        let row = count - 1;
+        if self.clock.is_some() {
+            own[(row, row)] += (1.0 - factor) * self.sizes[row] / self.rows[row];
+        }
+        own
+    }
+
+    /// The derivative of the return to the start, by saltation, without components that nothing
+    /// changes; `None` at a graze. Where time is not explicit, the slopes at the start are its
+    /// trivial direction.
+    pub fn monodromy(&self, ends: &[End]) -> Option<(DMatrix<f64>, Option<DVector<f64>>)> {
+        let n = self.n;
+        let mut product = DMatrix::identity(n, n);
+        for End { flown, event } in ends {
+            let by = event.guard_by.rows(0, n).transpose();
+            let reset = event.after_by.columns(0, n);
+            let jump = &event.slopes_after - reset * &event.slopes - event.after_by.column(n);
+            let mut saltation = reset.into_owned();
+            if by.amax() > 0.0 {
+                saltation += jump * by / event.rate();
+            }
+            product = saltation * flown.by.columns(0, n) * product;
+        }
+        let moving: Vec<usize> = (0..n).filter(|k| !self.apart[*k]).collect();
+        let product = product.select_rows(&moving).select_columns(&moving);
+        let last = &ends.last()?.event.slopes_after;
+        let trivial = self.clock.is_none().then(|| last.select_rows(&moving));
+        product.iter().all(|it| it.is_finite()).then_some((product, trivial))
+    }
+
+    /// The state after a part of a segment.
+    pub fn within(&self, draft: &Draft, i: usize, duration: f64) -> Result<Vec<f64>, OrbitError> {
+        let start = (draft.starts()[i], &draft.states[i][..]);
+        let flown = self.flows[i].run(&draft.parameters, start, duration, &self.options);
+        flown.map(|it| it.state).map_err(|error| OrbitError::Run { segment: i, error })
+    }
+
+    /// Whether what depends on the time is the same one period later, at both ends of segments.
+    pub fn repeats(&self, draft: &Draft, ends: &[End]) -> bool {
+        let (period, starts) = (draft.period(), draft.starts());
+        let is_same = |i: usize, s: f64, state: &[f64]| {
+            let at = |s: f64| self.events[i].at(&draft.parameters, s, state);
+            at(s).is_like(&at(s + period))
+        };
+        self.clock.is_none()
+            || (0..self.legs.len()).all(|i| {
+                is_same(i, starts[i], &draft.states[i])
+                    && is_same(i, starts[i] + draft.durations[i], &ends[i].flown.state)
+            })
+    }
+
+    /// Gives each equation its size, and refuses conditions that nothing moves.
+    fn measure_rows(&mut self, system: &System) -> Result<(), OrbitError> {
+        let (n, m, count) = (self.n, self.legs.len(), self.count());
+        let slopes = self.at(&self.place(&self.anchor))?.slopes;
+        for row in 0..m * n {
+            self.rows[row] = self.sizes[row % n];
+        }
+        for i in 0..m {
+            let size = slopes.row(m * n + i).norm();
+            let is_still = size == 0.0;
+            if is_still || !size.is_finite() {
+                let rule = self.legs[i].name(system);
+                return Err(OrbitError::StillGuard { segment: i, rule });
+            }
+            self.rows[m * n + i] = size;
+        }
+        self.rows[count - 1] = self.sizes[count - 1];
+        Ok(())
+    }
+}
+
+/// The sizes of the unknowns of a draft.
+fn sizes(draft: &Draft, active: &[(usize, f64)]) -> DVector<f64> {
+    let (n, m) = (draft.states[0].len(), draft.legs.len());
+    let largest = |k: usize| draft.states.iter().fold(0.0_f64, |most, it| most.max(it[k].abs()));
+    let or_one = |size: f64| if size > 0.0 && size.is_finite() { size } else { 1.0 };
+    let of_states: Vec<f64> = (0..n).map(|k| or_one(largest(k))).collect();
+    let time = or_one(draft.period().abs());
+    let states = (0..m).flat_map(|_| of_states.iter().copied());
+    let times = std::iter::repeat_n(time, m + 1);
+    DVector::from_vec(states.chain(times).chain(active.iter().map(|(_, size)| *size)).collect())
+}
+
+/// Whether a component need not come back at the end of an itinerary: nothing changes it, or it is
+/// a counter, which nothing else reads.
+pub(crate) fn is_apart(system: &System, legs: &[Leg], place: usize) -> bool {
+    let is_still = legs.iter().all(|leg| {
+        let slope = system.modes[leg.mode].slopes[place];
+        let changes = &leg.rule(system).changes;
+        system.graph.value(slope) == Some(0.0) && changes.iter().all(|(own, _)| *own != place)
+    });
+    let mut others = Vec::new();
+    for leg in legs {
+        let mode = &system.modes[leg.mode];
+        let slopes = mode.slopes.iter().enumerate().filter(|(own, _)| *own != place);
+        others.extend(slopes.map(|(_, slope)| *slope));
+        for rule in &mode.rules {
+            let changes = rule.changes.iter().filter(|(own, _)| *own != place);
+            others.extend(changes.map(|(_, formula)| *formula));
+            if let Trigger::When(guard, _) = rule.trigger {
+                others.push(guard);
+            }
+            if let Next::Branch(condition, ..) = rule.next {
+                others.push(condition);
+            }
+        }
+    }
+    is_still || !system.graph.reads(&others).contains(&Variable::Component(flow::narrow(place)))
+}
+
+/// The number of the tick at the end of each segment.
+fn ticks(system: &System, draft: &Draft) -> Result<Vec<Option<f64>>, OrbitError> {
+    let starts = draft.starts();
+    let ticks = draft.legs.iter().enumerate().map(|(i, leg)| {
+        let Trigger::Every { period, phase } = leg.rule(system).trigger else { return Ok(None) };
+        let [period, phase] = clock_values(system, &draft.parameters, period, phase)?;
+        Ok(Some(((starts[i] + draft.durations[i] - phase) / period).round()))
+    });
+    ticks.collect()
+}
+
+/// The period and the phase of a clock.
+///
+/// # Errors
+/// They are not usable numbers.
+pub(crate) fn clock_values(
+    system: &System,
+    parameters: &[f64],
+    period: Formula,
+    phase: Formula,
+) -> Result<[f64; 2], OrbitError> {
+    let inputs = Inputs { components: 0, parameters: parameters.len(), fixed: true };
+    let program = Program::compile(&system.graph, &[period, phase], inputs).with(parameters);
+    let mut values = [f64::NAN; 2];
+    program.run(f64::NAN, &[], &mut values);
+    let usable = values[0] > 0.0 && values.iter().all(|it| it.is_finite());
+    let expected = "a finite number above 0, with a finite phase";
+    InvalidValue::check("the period of a clock", values[0], expected, usable)?;
+    Ok(values)
+}
+
+/// The period of a clock of the itinerary with its derivatives, and how often it ticks.
+fn clock(
+    graph: &mut Graph,
+    system: &System,
+    legs: &[Leg],
+    active: &[usize],
+) -> Result<Option<(Program, f64)>, OrbitError> {
+    let periods = legs.iter().filter_map(|leg| match leg.rule(system).trigger {
+        Trigger::Every { period, .. } => Some(period),
+        _ => None,
+    });
+    let periods: Vec<Formula> = periods.collect();
+    let Some(&period) = periods.first() else {
+        let explicit = legs.iter().any(|leg| reads_time(system, *leg));
+        let expected = "a rule `every …` among the itinerary, whose period is that of what depends \
+                        on the time";
+        let found = GivenValue::Phrase("has no clock, and equations depend on the time".into());
+        InvalidValue::check("itinerary", found, expected, !explicit)?;
+        return Ok(None);
+    };
+    let mut formulas = vec![period];
+    formulas.extend(by_each(graph, period, 0, active).into_iter().skip(1));
+    let inputs = Inputs { components: 0, parameters: system.parameters.len(), fixed: true };
+    let ticks = periods.iter().filter(|it| **it == period).count();
+    Ok(Some((Program::compile(graph, &formulas, inputs), ticks as f64)))
+}
+
+/// Whether a segment depends on the time.
+fn reads_time(system: &System, leg: Leg) -> bool {
+    let rule = leg.rule(system);
+    let mut formulas = system.modes[leg.mode].slopes.clone();
+    formulas.extend(rule.changes.iter().map(|(_, formula)| *formula));
+    if let Trigger::When(guard, _) = rule.trigger {
+        formulas.push(guard);
+    }
+    system.graph.reads(&formulas).contains(&Variable::Time)
+}

@@ -1,0 +1,74 @@
+//! Why there is no orbit.
+
+use stickslip_solver::{InvalidValue, RunError};
+use thiserror::Error;
+
+/// Why an orbit or a branch was not found. Segments are counted from 0, in the order of the
+/// itinerary.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum OrbitError {
+    /// A value cannot be used.
+    #[error(transparent)]
+    Value(#[from] InvalidValue),
+    /// The solution along a segment cannot be computed.
+    #[error("segment {segment}: {error}")]
+    Run {
+        /// The segment.
+        segment: usize,
+        /// Why.
+        error: RunError,
+    },
+    /// A rule of the itinerary does not act behind the guess.
+    #[error(
+        "segment {segment}: rule `{rule}` does not act within {steps} steps from the guess; \
+         expected a start from which the rules of the itinerary follow each other"
+    )]
+    NoEvent {
+        /// The segment.
+        segment: usize,
+        /// The name of the rule.
+        rule: String,
+        /// The number of steps.
+        steps: usize,
+    },
+    /// Nothing moves the condition of a rule: it has no place.
+    #[error(
+        "segment {segment}: the condition of rule `{rule}` is zero or constant throughout; \
+         expected one that changes along the solution"
+    )]
+    StillGuard {
+        /// The segment.
+        segment: usize,
+        /// The name of the rule.
+        rule: String,
+    },
+    /// What happens at events does not repeat.
+    #[error("the run does not settle: its last {events} events do not repeat up to {tolerance:e}")]
+    NotSettled {
+        /// The number of events that were compared.
+        events: usize,
+        /// How much states at repeated events may differ, of their size.
+        tolerance: f64,
+    },
+    /// The search found no orbit.
+    #[error("no orbit near the guess: {reason} (segment {segment}, update {update:e})")]
+    NotFound {
+        /// What happened.
+        reason: &'static str,
+        /// The segment whose unknowns moved most in the last update.
+        segment: usize,
+        /// The length of the last update, of the size of the unknowns.
+        update: f64,
+    },
+    /// The search leads to a point and no orbit.
+    #[error(
+        "the guess leads to an orbit of length {period:e}, which is a point; expected a length \
+         above {least:e}"
+    )]
+    NoLength {
+        /// The length.
+        period: f64,
+        /// The least one.
+        least: f64,
+    },
+}

@@ -1,0 +1,71 @@
+//! Periodic orbits of piecewise-smooth ODEs, their stability, and where they change.
+//!
+//! [`Orbits`] has the orbits of a [`System`](stickslip_expression::System), which may be a text or
+//! functions of Python. An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
+//! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
+//! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
+//! parameters, and [`Orbits::doubled`] goes over to the orbit of twice the period at a flip.
+//!
+//! ```
+//! use stickslip_expression::System;
+//! use stickslip_orbits::{Guess, Orbits, Verdict};
+//!
+//! // A relay with hysteresis. Each half of its orbit takes log((1 + width)/(1 - width)).
+//! let relay = System::parse(
+//!     "parameter width = 0.5\nstate x = 0\nmode up\n  x' = 1 - x\n  \
+//!      when x > width \"down\" -> down\nmode down\n  x' = -1 - x\n  \
+//!      when x < -width \"up\" -> up\nstart in up",
+//! )?;
+//! let orbits = Orbits::new(&relay)?;
+//! let guess = Guess { itinerary: &["down", "up"], ..Guess::default() };
+//! let orbit = orbits.find(&relay.values(), &guess)?;
+//! assert!((orbit.period - 2.0 * 3.0_f64.ln()).abs() < 1e-12);
+//! assert_eq!(orbit.verdict, Verdict::Admissible);
+//! // The state is one number, whose direction is that of the orbit itself.
+//! assert_eq!(orbit.multipliers, Some(vec![]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy
+//!
+//! Flows are computed with a tolerance of 1e-13. Beside closed forms, states and special values of
+//! parameters are right to 1e-11 of their size, and multipliers to 1e-11 of the largest one (the
+//! tests have the figures). A verdict is decided: along the whole orbit, no condition of another
+//! rule becomes negative. Where rounding hides whether one does, the verdict says so. On a branch
+//! each *point* is decided; what happens between two neighbours, and back again, is not seen.
+//!
+//! # What is refused
+//!
+//! Equations that jump within a mode (`if`, `sign` and `floor` of what moves): modes or `sliding
+//! on` take their place. Orbits whose equations depend on the time need a rule `every …` in their
+//! itinerary, whose period is that of the equations; or the phase as a component. Itineraries have
+//! as many segments as make up to 1200 unknowns.
+//!
+//! The modules in reading order: `itinerary`, `orbit` and `error` are what is spoken of;
+//! `equations` has the equations of an orbit with a prescribed itinerary; `newton` solves them by
+//! the tracer's one search for points; `multipliers` and `admissible` judge what was found; `find`
+//! has the ways to an orbit, `branch` follows it, and `document` writes it.
+
+mod admissible;
+mod branch;
+#[cfg(feature = "serde")]
+pub mod document;
+mod equations;
+mod error;
+mod find;
+mod itinerary;
+mod multipliers;
+mod newton;
+mod orbit;
+
+pub use branch::curve::{Meeting, SpecialCurve};
+pub use branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
+pub use error::OrbitError;
+pub use find::{Guess, Orbits};
+pub use itinerary::Leg;
+pub use orbit::{Obstacle, Orbit, Segment, Verdict};
+pub use stickslip_expression::InvalidValue;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -1,0 +1,53 @@
+//! Grazing–sliding of a block on a belt, x″ + cx′ + x = A cos ωt + F while x′ < v_b.
+
+use std::f64::consts::TAU;
+
+use stickslip_expression::System;
+use stickslip_orbits::{BranchOptions, Guess, Orbit, Orbits, SpecialKind};
+
+use crate::branches::values;
+
+const TEXT: &str = include_str!("../../../../examples/orbits/sticking.slip");
+
+#[test]
+fn a_block_begins_to_stick() {
+    let orbits = Orbits::new(&System::parse(TEXT).expect("a system")).expect("orbits");
+    let (w, c): (f64, f64) = (1.4, 0.1);
+    let size = (1.0 - w * w).hypot(c * w);
+    let grazes = size / w;
+    let parameters = orbits.system().values();
+    let guess = Guess { itinerary: &["phase"], ..Guess::default() };
+    let orbit = orbits.find(&parameters, &guess).expect("an orbit");
+    let multipliers = orbit.multipliers.clone().expect("no graze");
+    let determinant = multipliers[0][0] * multipliers[1][0] - multipliers[0][1] * multipliers[1][1];
+    assert!((determinant - (-c * TAU / w).exp()).abs() < 1e-9, "{multipliers:?}");
+    assert!(orbit.is_admissible());
+    let branch = orbits.branch(&orbit, 0, [0.1, 1.2], &BranchOptions::default()).expect("it");
+    let found = values(&branch, SpecialKind::GrazingSliding);
+    assert!((found[0] - grazes).abs() < 1e-10, "{found:?} {grazes}");
+
+    // Behind it the orbit sticks for a while: one multiplier is 0, the other is near H₁₁.
+    let at = |a: f64| {
+        let parameters = [a, w, c, 0.4, 1.0];
+        orbits.settled(&parameters, &Guess::default(), 400.0).expect("an orbit")
+    };
+    let orbit = at(grazes * (1.0 + 1e-6));
+    assert_eq!(orbit.segments.len(), 3);
+    assert!(orbit.is_admissible(), "{:?}", orbit.verdict);
+    let multipliers = orbit.multipliers.clone().expect("no graze");
+    assert_eq!(multipliers[1], [0.0, 0.0]);
+    let (rate, time) = ((1.0 - c * c / 4.0).sqrt(), TAU / w);
+    let h11 =
+        (-c * time / 2.0).exp() * ((rate * time).cos() + c * (rate * time).sin() / (2.0 * rate));
+    assert!((multipliers[0][0] - h11).abs() < 1e-2, "{multipliers:?} {h11}");
+    // Far behind it the branch goes on: the orbit that sticks is followed by the system.
+    let orbit = at(0.8);
+    let branch = orbits.branch(&orbit, 0, [0.7, 1.2], &BranchOptions::default()).expect("it");
+    assert!(
+        branch
+            .points
+            .iter()
+            .all(|it| it.multipliers.as_ref().is_some_and(|all| all[1] == [0.0; 2]))
+    );
+    assert!(branch.points.iter().any(Orbit::is_admissible));
+}

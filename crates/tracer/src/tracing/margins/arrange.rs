@@ -1,0 +1,165 @@
+//! The arrangement of lines: vertices, and the parts of lines between them.
+
+use crate::curve::{Vertex, VertexKind};
+use crate::family::Family;
+use crate::lengths::angle;
+use crate::tracing::corrector::crossing;
+use crate::tracing::margins::line::{Cut, Line, Place, Reach};
+use crate::tracing::margins::meet::{Crossing, crossings};
+use crate::tracing::margins::parts::Part;
+use crate::tracing::margins::{Arranged, Lines};
+use crate::tracing::network::Unresolved;
+use crate::tracing::runs::Traced;
+
+impl<F: Family> Lines<'_, '_, F> {
+    /// The greatest number of lines. Many are not seen by runs.
+    pub(super) fn most(&self) -> usize {
+        self.runs.options.max_curves.saturating_mul(2)
+    }
+
+    /// The lines that could not be followed to their end, or not at all.
+    pub(super) fn unfollowed(&self) -> Vec<Unresolved<F::Label>> {
+        let limit = |line: &Line<F::Margin>| {
+            let ends = line.ends?;
+            let end = ends.iter().position(|end| *end == Reach::Limit)?;
+            Some(Unresolved::TooManyNodes { point: line.tip(end) })
+        };
+        let mut open: Vec<_> = self.all.iter().filter_map(limit).collect();
+        if let Some(last) = self.all.get(self.most() - 1) {
+            open.push(Unresolved::TooManyCurves { point: last.tip(0) });
+        }
+        open
+    }
+
+    /// Divides the lines where they meet, and asks for the labels beside their parts.
+    pub(super) fn arranged(&mut self) -> Traced<Arranged<F>, F> {
+        self.drop_fragments();
+        let mut vertices = Vec::new();
+        let mut cuts: Vec<Vec<Cut>> = vec![Vec::new(); self.all.len()];
+        for (line, own) in self.all.iter().zip(&mut cuts) {
+            for end in 0..2 {
+                if line.ends.is_some_and(|ends| ends[end] == Reach::Edge) {
+                    let vertex = self.edge_vertex(line, end, &mut vertices);
+                    own.push(Cut { place: line.end(end), vertex });
+                }
+            }
+        }
+        for meeting in crossings(&self.all, &self.runs.window, &self.runs.lengths) {
+            if let Some(vertex) = self.crossing_vertex(&meeting)? {
+                self.keep(vertex, &mut vertices);
+            }
+        }
+        for [index, end] in self.open_ends() {
+            let vertex = self.end_vertex(index, end, &mut vertices)?;
+            cuts[index].push(Cut { place: self.all[index].end(end), vertex });
+        }
+        let reach = 2.0 * self.runs.lengths.same;
+        for (vertex, it) in vertices.iter().enumerate() {
+            for (line, own) in self.all.iter().zip(&mut cuts) {
+                let known = own.iter().any(|cut| cut.vertex == vertex);
+                if let Some((place, _)) = line.near(&it.point, reach).filter(|_| !known) {
+                    own.push(Cut { place, vertex });
+                }
+            }
+        }
+        let parts = self.divided(cuts);
+        self.seen(&parts, vertices)
+    }
+
+    /// Drops lines that cannot be told from others along their whole length: fragments of margins
+    /// that are singular there.
+    fn drop_fragments(&mut self) {
+        /// A line with more nodes was followed because it is one.
+        const MOST: usize = 12;
+        let reach = 0.5 * self.runs.lengths.half;
+        let is_fragment = |(index, line): (usize, &Line<F::Margin>)| {
+            let hides = |other: &Line<F::Margin>| {
+                line.nodes.iter().all(|node| other.near(&node.point, reach).is_some())
+            };
+            let mut others = self.all.iter().enumerate().filter(|(other, _)| *other != index);
+            line.ends == Some([Reach::Lost; 2])
+                && line.nodes.len() <= MOST
+                && others.any(|(_, other)| hides(other))
+        };
+        let fragments: Vec<bool> = self.all.iter().enumerate().map(is_fragment).collect();
+        let mut fragments = fragments.into_iter();
+        self.all.retain(|_| fragments.next() == Some(false));
+    }
+
+    /// The index of the vertex where a line leaves the window.
+    fn edge_vertex(
+        &self,
+        line: &Line<F::Margin>,
+        end: usize,
+        vertices: &mut Vec<Vertex<F::Margin>>,
+    ) -> usize {
+        let (window, tip) = (self.runs.window, line.tip(end));
+        let point = window.onto_boundary(&tip, self.runs.lengths.same).unwrap_or(tip);
+        let corner = window.corners().contains(&point);
+        let kind = if corner { VertexKind::WindowCorner } else { VertexKind::WindowEdge };
+        self.keep(Vertex { point, kind, margins: vec![line.margin.clone()] }, vertices)
+    }
+
+    /// The index of a vertex, which may be a known one.
+    fn keep(&self, vertex: Vertex<F::Margin>, vertices: &mut Vec<Vertex<F::Margin>>) -> usize {
+        let near = 2.0 * self.runs.lengths.same;
+        let known = vertices.iter().position(|it| (it.point - vertex.point).norm() < near);
+        known.unwrap_or_else(|| {
+            vertices.push(vertex);
+            vertices.len() - 1
+        })
+    }
+
+    /// The vertex where the cubics of two lines cross, solved for with their margins; `None` if the
+    /// lines only seem to cross.
+    fn crossing_vertex(&self, meeting: &Crossing) -> Traced<Option<Vertex<F::Margin>>, F> {
+        let lengths = self.runs.lengths;
+        let Crossing { lines: [one, other], places: [here, there], point } = meeting;
+        let (one, other) = (&self.all[*one], &self.all[*other]);
+        let names = [&one.names[here.piece], &other.names[there.piece]];
+        let (along, across) = (one.tangent(*here), other.tangent(*there));
+        let sine = along.perp(&across).abs().max(lengths.same / lengths.scale);
+        let found = if names[0] == names[1] {
+            None
+        } else {
+            let reach = 10.0 * lengths.close;
+            crossing(&self.runs, names, point, &along, lengths.beyond, reach)?
+        };
+        let open = (lengths.same / sine).max(lengths.touch);
+        let solved = found.map(|(place, _)| place).filter(|place| (place - point).norm() < open);
+        // Lines that touch cross by their errors.
+        if solved.is_none() && sine < 100.0 * angle::DEPENDENT {
+            return Ok(None);
+        }
+        let margins = vec![one.margin.clone(), other.margin.clone()];
+        let point = self.inside(&solved.unwrap_or(*point));
+        Ok(Some(Vertex { point, kind: VertexKind::Crossing, margins }))
+    }
+
+    /// The parts between the cuts, line after line.
+    fn divided(&self, cuts: Vec<Vec<Cut>>) -> Vec<Part> {
+        let mut parts = Vec::new();
+        for (index, (line, mut own)) in self.all.iter().zip(cuts).enumerate() {
+            own.sort_by(|one, other| {
+                let order = |cut: &Cut| cut.place.piece as f64 + cut.place.theta;
+                order(one).total_cmp(&order(other))
+            });
+            if line.ends.is_none() {
+                let Some(&first) = own.first() else {
+                    parts.push(Part { line: index, cuts: None });
+                    continue;
+                };
+                let piece = first.place.piece + line.pieces();
+                own.push(Cut { place: Place { piece, ..first.place }, ..first });
+            }
+            for pair in own.windows(2) {
+                let part = Part { line: index, cuts: Some([pair[0], pair[1]]) };
+                let is_loop = pair[0].vertex == pair[1].vertex;
+                if !is_loop || part.length(line) > self.runs.lengths.piece {
+                    parts.push(part);
+                }
+            }
+        }
+        parts
+    }
+}

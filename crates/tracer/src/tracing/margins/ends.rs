@@ -1,0 +1,151 @@
+//! Where lines end: at other lines, on which their margins cease to exist.
+
+use crate::curve::{Vertex, VertexKind};
+use crate::family::Family;
+use crate::tracing::corrector::crossing;
+use crate::tracing::margins::Lines;
+use crate::tracing::margins::line::{Place, Reach};
+use crate::tracing::runs::Traced;
+use crate::window::Point;
+
+impl<F: Family> Lines<'_, '_, F> {
+    /// The ends of lines inside the window, each a line and 0 or 1. Those that lie on other lines
+    /// come first: where these end, lines end that were lost farther away.
+    pub(super) fn open_ends(&self) -> Vec<[usize; 2]> {
+        let mut open = Vec::new();
+        for (index, line) in self.all.iter().enumerate() {
+            for end in 0..2 {
+                if line.ends.is_some_and(|ends| ends[end] != Reach::Edge) {
+                    let beside = self.nearest(index, &line.tip(end));
+                    let distance = beside.map_or(f64::INFINITY, |(_, _, distance)| distance);
+                    open.push((distance, [index, end]));
+                }
+            }
+        }
+        open.sort_by(|one, other| one.0.total_cmp(&other.0));
+        open.into_iter().map(|(_, end)| end).collect()
+    }
+
+    /// The index of the vertex at which a line ends that was lost, among `vertices` or new.
+    pub(super) fn end_vertex(
+        &self,
+        index: usize,
+        end: usize,
+        vertices: &mut Vec<Vertex<F::Margin>>,
+    ) -> Traced<usize, F> {
+        let lengths = self.runs.lengths;
+        let tip = self.all[index].tip(end);
+        if let Some(ahead) = self.touched_ahead(index, end, vertices) {
+            return Ok(ahead);
+        }
+        let beside = self.nearest(index, &tip);
+        let solved = match beside {
+            Some((other, place, distance)) => {
+                let reach = (100.0 * distance).max(lengths.touch).min(lengths.close);
+                self.met(index, end, other, place, reach)?
+            }
+            None => None,
+        };
+        let aim = solved.unwrap_or(tip);
+        let away = |vertex: &Vertex<F::Margin>| (vertex.point - aim).norm();
+        let known = vertices.iter().enumerate().map(|(vertex, it)| (vertex, away(it)));
+        let known = known.min_by(|one, other| one.1.total_cmp(&other.1));
+        let snaps = match (solved, beside) {
+            (Some(_), _) => 2.0 * lengths.same,
+            // The error of a place that was lost is like its distance from the other line.
+            (None, Some((_, _, distance))) => 10.0 * distance + lengths.piece,
+            (None, None) => lengths.close,
+        };
+        if let Some((vertex, distance)) = known
+            && distance <= snaps.min(lengths.close)
+        {
+            return Ok(vertex);
+        }
+        let margins = vec![self.all[index].margin.clone()];
+        let foot = beside.map(|(other, place, _)| self.all[other].at(place));
+        let point = solved.or(foot).unwrap_or(tip);
+        vertices.push(Vertex { point, kind: VertexKind::Degenerate, margins });
+        Ok(vertices.len() - 1)
+    }
+
+    /// The line that passes closest by the tip of another.
+    fn nearest(&self, index: usize, tip: &Point) -> Option<(usize, Place, f64)> {
+        let reach = self.runs.lengths.close;
+        let others = self.all.iter().enumerate().filter(|(other, _)| *other != index);
+        let near = others.filter_map(|(other, line)| {
+            line.near(tip, reach).map(|(place, distance)| (other, place, distance))
+        });
+        near.min_by(|one, other| one.2.total_cmp(&other.2))
+    }
+
+    /// The place where the margin of a line that ends vanishes together with that of another line
+    /// that passes by, which is a smooth margin.
+    fn met(
+        &self,
+        index: usize,
+        end: usize,
+        other: usize,
+        place: Place,
+        reach: f64,
+    ) -> Traced<Option<Point>, F> {
+        let (line, passing) = (&self.all[index], &self.all[other]);
+        let own = &line.names[if end == 0 { 0 } else { line.pieces() }];
+        let names = [own, &passing.names[place.piece]];
+        if names[0] == names[1] {
+            return Ok(None);
+        }
+        let (tip, along) = (line.tip(end), passing.tangent(place));
+        let found = crossing(&self.runs, names, &tip, &along, self.runs.lengths.beyond, reach)?;
+        let on = |point: &Point| passing.distance(point, 2.0 * self.runs.lengths.same).is_some();
+        Ok(found.filter(|(point, error)| *error <= self.runs.lengths.same && on(point)))
+            .map(|found| found.map(|(point, _)| point))
+    }
+
+    /// The vertex ahead of a line that was lost because it touches another one. The square root of
+    /// their distance falls evenly up to the place where they touch.
+    fn touched_ahead(
+        &self,
+        index: usize,
+        end: usize,
+        vertices: &[Vertex<F::Margin>],
+    ) -> Option<usize> {
+        let lengths = self.runs.lengths;
+        let line = &self.all[index];
+        let last = line.pieces();
+        let (tip, before) = (line.tip(end), if end == 0 { 1 } else { last - 1 });
+        let forward = tip - line.nodes[before].point;
+        for (other, passing) in self.all.iter().enumerate() {
+            if other == index {
+                continue;
+            }
+            let apart = |point: &Point| passing.distance(point, 10.0 * lengths.close);
+            let Some(close) = apart(&tip) else { continue };
+            if close >= lengths.half || close <= lengths.least {
+                continue;
+            }
+            // A line that does not touch it is lost right before it.
+            let here = vertices.iter().any(|it| (it.point - tip).norm() < 10.0 * close);
+            if here {
+                continue;
+            }
+            let inwards = (0..=last).map(|step| if end == 0 { step } else { last - step });
+            let far = inwards.map(|node| line.nodes[node].point).find_map(|point| {
+                let distance = apart(&point).filter(|distance| *distance > 4.0 * close)?;
+                Some(((point - tip).norm(), distance))
+            });
+            let Some((way, distance)) = far else { continue };
+            let left = way * close.sqrt() / (distance.sqrt() - close.sqrt());
+            let ahead = vertices.iter().enumerate().filter_map(|(vertex, it)| {
+                let step = it.point - tip;
+                let (away, on) = (step.norm(), passing.distance(&it.point, lengths.touch));
+                let alike = away > 0.5 * left && away < 2.0 * left && step.dot(&forward) > 0.0;
+                (alike && on.is_some()).then(|| (vertex, (away - left).abs()))
+            });
+            let best = ahead.min_by(|one, other| one.1.total_cmp(&other.1));
+            if let Some((vertex, _)) = best {
+                return Some(vertex);
+            }
+        }
+        None
+    }
+}

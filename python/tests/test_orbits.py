@@ -1,0 +1,106 @@
+"""Periodic orbits against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import stickslip
+from stickslip import ComputationError
+
+BALL = """
+parameter a = 0.02, r = 0.7
+state x = 0.015, v = 0.5, phase = 0.8
+table = a*sin(phase)
+x' = v
+v' = -1
+phase' = 2*pi
+when x < table "bounce"
+  x := table
+  v := (1 + r)*table' - r*v
+when phase > 2*pi "period"
+  phase := phase - 2*pi
+"""
+
+
+def test_an_orbit_has_its_closed_form() -> None:
+    ball = stickslip.system(BALL)
+    orbit = ball.orbit(itinerary=("period", "bounce"))
+    a, w, r = 0.02, 2 * math.pi, 0.7
+    phase = math.acos((1 - r) / (2 * (1 + r) * a * w))
+    assert abs(orbit.segments[0].state[2] - phase) < 1e-11
+    assert orbit.multipliers is not None
+    trace = 1 + r**2 - (1 + r) ** 2 * a * w**2 * math.sin(phase)
+    assert abs(orbit.multipliers.sum() - trace) < 1e-10
+    assert abs(orbit.multipliers.prod() - r**2) < 1e-11
+    assert orbit.admissible and orbit.stable and orbit.obstacle is None
+    t, y = orbit.course(20)
+    assert y.shape == (3, t.size) == (3, 42) and abs(t[-1] - t[0] - 1.0) < 1e-13
+    # From an orbit at another parameter, and from a run that settles.
+    near = ball.orbit(near=orbit, parameters={"a": 0.021})
+    settled = ball.orbit(settle=200.0, parameters={"a": 0.021})
+    assert near.parameters["a"] == 0.021
+    found = [min(s.end[0] for s in it.segments) for it in (near, settled)]
+    assert abs(found[0] - found[1]) < 1e-10
+
+
+def test_a_branch_has_its_special_orbits() -> None:
+    ball = stickslip.system(BALL)
+    orbit = ball.orbit(itinerary=["period", "bounce"])
+    branch = ball.branch(orbit, "a", (0.005, 0.05))
+    assert branch.objection is None and not branch.closed
+    special = {it.kind: it for it in branch.specials}
+    assert abs(special["fold"].value - 0.014043083214) < 1e-11
+    assert abs(special["flip"].value - 0.029654967002) < 1e-11
+    assert branch.values.min() >= 0.014043083
+    assert branch.ends("v", 1).shape == branch.values.shape == branch.admissible.shape
+    assert branch.svg("v").startswith("<svg")
+    curve = ball.curve(special["flip"], ("r", "a"), (0.6, 0.8), (0.01, 0.06))
+    r, a = curve.values
+    # Aω² sin φ = 2(1 + r²)/(1 + r)², with cos φ = (1 − r)/(2(1 + r)Aω).
+    w = 2 * math.pi
+    cosine, sine = (1 - r) / (2 * (1 + r)) / w, 2 * (1 + r**2) / (1 + r) ** 2 / w**2
+    assert np.abs(a - np.hypot(cosine, sine)).max() < 1e-11 and a.size > 5
+    assert {round(float(r[0]), 12), round(float(r[-1]), 12)} == {0.6, 0.8}
+    doubled = ball.doubled(special["flip"].orbit, "a")
+    assert abs(doubled.period - 2.0) < 1e-12 and doubled.stable
+    assert len(doubled.segments) == 4
+    with pytest.raises(ValueError, match="component = 'y'; expected one of x, v, phase"):
+        branch.svg("y")
+
+
+def test_functions_have_orbits_too() -> None:
+    belt = stickslip.HybridSystem()
+    stick = belt.mode("stick", lambda t, y: [y[1], 0.0])
+    slip = belt.mode("slip", lambda t, y: [y[1], 0.6 - y[0]])
+    stick.guard("breaks away", lambda t, y: 1.0 - y[0], to=slip)
+    slip.guard("stops", lambda t, y: 0.5 - y[1], to=stick, reset=lambda t, y: [y[0], 0.5])
+    formulas = stickslip.solve(belt, (0, 30), [0.0, 0.5], "stick").system
+    assert formulas is not None
+    orbit = formulas.orbit(itinerary=["breaks away", "stops"])
+    assert abs(orbit.period - 6.533703422732) < 1e-11
+    assert orbit.admissible and orbit.multipliers is not None
+    # Where it sticks, it forgets where it was.
+    assert orbit.multipliers.tolist() == [0.0]
+
+
+def test_what_cannot_be_is_refused() -> None:
+    ball = stickslip.system(BALL)
+    with pytest.raises(ValueError, match="none given; expected one of itinerary, settle and near"):
+        ball.orbit()
+    with pytest.raises(ValueError, match="a rule of mode main, which has bounce, period"):
+        ball.orbit(itinerary=["bonce"])
+    with pytest.raises(ValueError, match="expected a list of names"):
+        ball.orbit(itinerary="bounce")
+    with pytest.raises(ComputationError, match="does not settle"):
+        ball.orbit(settle=0.5)
+    orbit = ball.orbit(itinerary=["period", "bounce"])
+    with pytest.raises(ValueError, match="parameter = 'b'; expected one of a, r"):
+        ball.branch(orbit, "b", (0.0, 1.0))
+    with pytest.raises(ValueError, match="a = 0.02 is out of range"):
+        ball.branch(orbit, "a", (1.0, 2.0))
+    decay = stickslip.system("state x = 1\nx' = if x > 0.5 then -1 else 1\nend = 1")
+    with pytest.raises(ValueError, match="equations that jump within a mode"):
+        decay.orbit(itinerary=["a"])
