@@ -186,7 +186,7 @@ impl ForceRule {
         let viscous = dashpot * state.w;
         let (beside, viscous) = match self.law.coulomb_test {
             CoulombTest::Spring if self.law.remembers() => (viscous, 0.0),
-            _ => (0.0, viscous),
+            CoulombTest::Spring | CoulombTest::Total => (0.0, viscous),
         };
         let trial = match self.law.history {
             HistoryOf::Displacement => {
