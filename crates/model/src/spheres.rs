@@ -13,6 +13,7 @@ pub(crate) mod reduction;
 pub(crate) mod report;
 pub mod scaling;
 pub(crate) mod surface;
+mod units;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use encounter::{Encounter, EncounterError, Motion, WallMotion};

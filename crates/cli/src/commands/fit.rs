@@ -130,7 +130,7 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
         deliver([plot.write(Ok(picture))?], "")?;
     }
     if let Some(code) = arguments.write {
-        let text = input::of(&result, &settings.bodies, code, &arguments.threads)?;
+        let text = input::of(&result, &settings.bodies, code, arguments.threads)?;
         return print(|out| out.write_all(text.as_bytes()));
     }
     print(|out| match arguments.format {

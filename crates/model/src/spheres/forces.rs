@@ -3,8 +3,8 @@
 use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
 
 use super::quantity::{self, Quantity};
-use super::scaling::Units;
 use super::surface::Surface;
+use super::units::Units;
 use crate::restitution::{self, RestitutionError};
 
 /// The constants of a contact law in SI units. Which of them a law has is said at each.

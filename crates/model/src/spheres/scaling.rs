@@ -3,12 +3,13 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
-use stickslip_contact::{Contact, Damping, InvalidValue, Law, Normal, Tangential};
+use stickslip_contact::{Contact, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::{Body, Material, Sphere};
 use super::forces::Forces;
 use super::quantity;
 use super::surface::Surface;
+use super::units::Units;
 
 const POSITIVE: &str = "a finite number above 0";
 
@@ -179,33 +180,6 @@ impl BodyPair {
             normal_m_per_s,
             time_unit_s: time,
         })
-    }
-}
-
-/// The units of an impact: of time in s, of length in m, and the scaled damping a of a damping time
-/// of 1 s.
-pub(super) struct Units {
-    time: f64,
-    length: f64,
-    pub damping_per_s: f64,
-}
-
-impl Units {
-    /// The units under a law with β, the elastic constant over the effective mass.
-    pub fn new(law: Law, beta: f64, normal_m_per_s: f64) -> Self {
-        let time = match law.normal {
-            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
-            Normal::Linear => 1.0 / beta.sqrt(),
-        };
-        let length = normal_m_per_s * time;
-        let damping_per_s = match (law.normal, law.damping) {
-            (_, Damping::None) => 0.0,
-            (Normal::Hertz, Damping::Viscoelastic) => 1.0 / time,
-            (_, Damping::Linear) => beta * time,
-            (_, Damping::Viscoelastic) => beta * time * length.sqrt(),
-            (_, Damping::Tsuji) => beta * time * length.sqrt().sqrt(),
-        };
-        Self { time, length, damping_per_s }
     }
 }
 

@@ -22,7 +22,7 @@ pub fn of(
     fit: &Fit,
     bodies: &Bodies,
     code: Code,
-    threads: &ThreadsArguments,
+    threads: ThreadsArguments,
 ) -> Result<String, Failure> {
     let pair = fit.best_pair(bodies)?;
     let (Some(pair), Some(speed)) = (pair, fit.speed_m_per_s) else {
@@ -62,6 +62,6 @@ pub fn of(
             row.steps_per_contact, eps_t.median, eps_t.worst.error
         ));
     }
-    let told: String = told.iter().map(|line| format!("{comment} {line}\n")).collect();
-    Ok(told + &lines)
+    let told: Vec<_> = told.iter().map(|line| format!("{comment} {line}")).collect();
+    Ok(told.join("\n") + "\n" + &lines)
 }
