@@ -28,10 +28,11 @@ impl OrbitSystem {
         &self,
         py: Python<'_>,
         parameters: Vec<f64>,
-        (mode, time, state): Start,
+        start: Start,
         itinerary: Vec<String>,
         durations: Option<Vec<f64>>,
     ) -> PyResult<String> {
+        let (mode, time, state) = start;
         let itinerary: Vec<&str> = itinerary.iter().map(String::as_str).collect();
         let (state, durations) = (state.as_deref(), durations.as_deref());
         let guess = Guess { mode, time, state, itinerary: &itinerary, durations };
@@ -42,9 +43,10 @@ impl OrbitSystem {
         &self,
         py: Python<'_>,
         parameters: Vec<f64>,
-        (mode, at, state): Start,
+        start: Start,
         time: f64,
     ) -> PyResult<String> {
+        let (mode, at, state) = start;
         let guess = Guess { mode, time: at, state: state.as_deref(), ..Guess::default() };
         self.written(py.detach(|| self.0.settled(&parameters, &guess, time)))
     }
@@ -70,10 +72,11 @@ impl OrbitSystem {
         py: Python<'_>,
         orbit: &str,
         parameter: usize,
-        (low, high): (f64, f64),
+        range: (f64, f64),
         longest_step: f64,
         most_points: usize,
     ) -> PyResult<String> {
+        let (low, high) = range;
         let orbit = self.read(orbit)?;
         let usual = BranchOptions::default();
         let first_step = usual.first_step.min(longest_step);
