@@ -62,7 +62,8 @@ impl Along<'_> {
 }
 
 /// Where a function changes its sign from `one` to `other` within a length, with what it is
-/// computed from: by false position in the manner of Illinois. `None` if the function ceases between.
+/// computed from: by false position in the manner of Illinois. `None` if the function ceases
+/// between.
 pub(super) fn zero<T>(
     (length, one, other): (f64, f64, f64),
     mut function: impl FnMut(f64) -> Result<Option<(f64, T)>, OrbitError>,
