@@ -1,10 +1,10 @@
 //! The active mode with its guards, between two steps.
 //!
-//! A guard that was zero where its phase began is remembered beyond the phase. Another guard may act
-//! at the same instant and lead to a mode in which the first guard is still zero, wherever rounding
-//! has put it. So a phase without length hands on which guards were zero. A guard that changes its
-//! sign with the mode, or whose sign a prescribed run turns, is recognised by the size of its
-//! value.
+//! A guard that was zero where its phase began is remembered beyond the phase. Another guard may
+//! act at the same instant and lead to a mode in which the first guard is still zero, wherever
+//! rounding has put it. So a phase without length hands on which guards were zero. A guard that
+//! changes its sign with the mode, or whose sign a prescribed run turns, is recognised by the size
+//! of its value.
 
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard};
