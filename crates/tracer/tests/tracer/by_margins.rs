@@ -9,8 +9,11 @@ use stickslip_tracer::{
 /// Margins with names, each with the function of the plane that it is where it exists.
 struct Shapes<L> {
     label: fn(&Point) -> L,
-    margins: &'static [(&'static str, fn(&Point) -> Option<f64>)],
+    margins: &'static [(&'static str, Value)],
 }
+
+/// A margin where it exists.
+type Value = fn(&Point) -> Option<f64>;
 
 impl<L: Clone + std::fmt::Debug + Ord + std::hash::Hash> Family for Shapes<L> {
     type Label = L;
