@@ -14,8 +14,8 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use stickslip::model::{
-    self, Collision, Contact, CoulombTest, Damping, End, Engine, HistoryOf, Law, Normal,
-    Tangential, Tolerances,
+    self, Contact, CoulombTest, Damping, End, Engine, HistoryOf, Law, Normal, Tangential,
+    Tolerances,
 };
 
 #[path = "../../../../tests/common/plain.rs"]
