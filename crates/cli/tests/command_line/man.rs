@@ -4,11 +4,13 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 20] = [
+const PAGES: [&str; 23] = [
     "stickslip-asymptote.1",
+    "stickslip-branch.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
     "stickslip-converge.1",
+    "stickslip-curve.1",
     "stickslip-explore.1",
     "stickslip-fit.1",
     "stickslip-impact.1",
@@ -17,6 +19,7 @@ const PAGES: [&str; 20] = [
     "stickslip-locate.1",
     "stickslip-man.1",
     "stickslip-map.1",
+    "stickslip-orbit.1",
     "stickslip-reproduce.1",
     "stickslip-run.1",
     "stickslip-stack.1",
