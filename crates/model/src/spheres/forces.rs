@@ -48,7 +48,7 @@ pub struct Constants {
     /// ζ = −ln ε_n/√(π² + ln² ε_n).
     pub critical_damping_ratio: Option<f64>,
     /// Coefficient of normal restitution ε_n, from which γ follows by
-    /// [`restitution::damping`](crate::restitution::damping).
+    /// [`restitution::damping`].
     pub e_n: Option<f64>,
     /// Normal velocity in m/s at which ε_n is [`e_n`](Self::e_n), in laws where ε_n
     /// [depends on it](crate::restitution::depends_on_velocity).
