@@ -51,7 +51,7 @@ pub fn find(name: &str) -> Option<Preset> {
 /// ```
 /// use stickslip_contact::presets;
 ///
-/// assert_eq!(presets::near("gran/hook/histroy"), ["gran/hooke/history"]);
+/// assert_eq!(presets::near("gran/hook/histroy")[0], "gran/hooke/history");
 /// assert_eq!(presets::near("nowhere"), [""; 0]);
 /// ```
 #[must_use]

@@ -165,11 +165,11 @@ impl SystemFamily {
     /// those that end have no more than the result, which is from 4 to 12.
     ///
     /// ```
-    /// use stickslip_expression::{SystemFamily, parse};
+    /// use stickslip_expression::{System, SystemFamily};
     /// use stickslip_solver::Options;
     /// use stickslip_tracer::{Point, Window};
     ///
-    /// let ball = parse(include_str!("../../../examples/systems/ball.slip"))?;
+    /// let ball = System::parse(include_str!("../../../examples/systems/ball.slip"))?;
     /// let axes = ["e", "g"].map(|name| {
     ///     ball.parameters.iter().position(|parameter| parameter.name == name).expect("known")
     /// });

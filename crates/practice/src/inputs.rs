@@ -82,7 +82,7 @@ impl Code {
 ///     tangential_damping_ratio: 0.5,
 /// };
 /// let text = lines(Code::Lammps, &pair)?;
-/// assert!(text.contains("hooke 50000.0 500.0 tangential linear_history 20000.0 0.5 0.3"));
+/// assert!(text.contains("tangential linear_history 20000.0 0.5 0.3 damping mass_velocity"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -189,7 +189,7 @@ impl Forces {
             Dashpot::Ratio(ratio) => ratio * (mass_kg / elastic).sqrt(),
             Dashpot::Scaled(damping, normal_m_per_s) => {
                 let units = Units::new(self.law, elastic / mass_kg, normal_m_per_s);
-                damping / units.damping_per_s
+                damping / units.damping(1.0)
             }
         };
         // Without a spring any stiffness will do.

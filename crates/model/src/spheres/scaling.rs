@@ -164,7 +164,8 @@ impl BodyPair {
         }
         let Self { law, alpha, .. } = *self;
         let beta = self.elastic_constant / self.effective_mass_kg;
-        let Units { time, length, damping_per_s } = Units::new(law, beta, normal_m_per_s);
+        let units = Units::new(law, beta, normal_m_per_s);
+        let Units { time, length, .. } = units;
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = self.surface;
         let stiffness = match law.tangential {
             Tangential::Constant => tangential_stiffness_kg_per_s2,
@@ -172,7 +173,7 @@ impl BodyPair {
         };
         let kappa = stiffness * time * time / (alpha * self.effective_mass_kg);
         let psi = tangential_m_per_s / normal_m_per_s * alpha / friction;
-        let damping = damping_per_s * damping_time_s;
+        let damping = units.damping(damping_time_s);
         let contact = Contact::new(kappa, psi, damping)?;
         Ok(Impact {
             contact: contact.with_law(law, self.tangential_damping())?,
