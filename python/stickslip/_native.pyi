@@ -119,6 +119,7 @@ class FormulaSystem:
         progress: _Report | None = None,
     ) -> dict[str, Any]: ...
 
+@final
 class OrbitSystem:
     def __new__(cls, system: FormulaSystem) -> OrbitSystem: ...
     def find(
@@ -140,7 +141,7 @@ class OrbitSystem:
         self,
         orbit: str,
         parameter: int,
-        interval: tuple[float, float],
+        range: tuple[float, float],
         longest_step: float,
         most_points: int,
     ) -> str: ...

@@ -106,6 +106,31 @@ def _fit() -> stickslip.Fit:
     return stickslip.fit(data, free=["mu"], kappa=6.0)
 
 
+
+@cache
+def relay() -> stickslip.FormulaSystem:
+    return stickslip.system(
+        "parameter width = 0.5\nstate x = 0\n"
+        "mode up\n  x' = 1 - x\n  when x > width \"down\" -> down\n"
+        "mode down\n  x' = -1 - x\n  when x < -width \"up\" -> up\nstart in up"
+    )
+
+
+@cache
+def table() -> stickslip.FormulaSystem:
+    """A ball on a table that shakes."""
+    return stickslip.system(
+        "parameter a = 0.02, r = 0.7\nstate x = 0.015, v = 0.5, phase = 0.8\n"
+        "table = a*sin(phase)\nx' = v\nv' = -1\nphase' = 2*pi\n"
+        'when x < table "bounce"\n  x := table\n  v := (1 + r)*table\' - r*v\n'
+        'when phase > 2*pi "period"\n  phase := phase - 2*pi'
+    )
+
+
+def _branch() -> stickslip.Branch:
+    return table().branch(table().orbit(itinerary=["period", "bounce"]), "a", (0.02, 0.035))
+
+
 WINDOW: Any = ((0.5, 2.0), (0.5, 0.8))
 COARSE, FEW = TraceOptions(cells=8), VerifyOptions(random_points=50, near_points=2)
 
@@ -152,6 +177,13 @@ MADE: dict[str, Callable[[], Any]] = {
     "Keyword": lambda: stickslip.restitution(0.8, "mfix/HERTZIAN").keywords[0],
     "NamedLaw": lambda: stickslip.laws()[LAW],
     "Restitution": lambda: stickslip.restitution(0.8, LAW),
+    "Branch": _branch,
+    "Orbit": lambda: relay().orbit(itinerary=["down", "up"]),
+    "OrbitSegment": lambda: of("Orbit").segments[0],
+    "SpecialCurve": lambda: table().curve(
+        of("SpecialOrbit"), ("r", "a"), (0.68, 0.72), (0.01, 0.06)
+    ),
+    "SpecialOrbit": lambda: next(it for it in of("Branch").specials if it.kind == "flip"),
     "Region": lambda: of("Atlas").regions[0],
     "RestitutionTable": lambda: stickslip.table((1, 2), (0.5, 1.5), bound=1e-5, regions=True),
     "Sensitivities": lambda: stickslip.system(BALL).sensitivities("restitution", "v"),

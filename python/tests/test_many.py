@@ -160,9 +160,9 @@ def test_what_does_not_fit_is_refused() -> None:
 
 
 def test_guards_that_are_sampled_are_said_once(monkeypatch) -> None:
-    from stickslip import hybrid
+    from stickslip import _hybrid
 
-    monkeypatch.setattr(hybrid, "_warned", [])
+    monkeypatch.setattr(_hybrid, "_warned", [])
 
     def lost(t, y):
         return float(str(y[0])) - 0.5
@@ -171,10 +171,10 @@ def test_guards_that_are_sampled_are_said_once(monkeypatch) -> None:
         found = solve(lambda t, y: [-y[0]], (0, 1), [1.0], events=lost)
     assert not found.decided and found.events.size == 1
     solve(lambda t, y: [-y[0]], (0, 1), [1.0], events=lost)
-    monkeypatch.setattr(hybrid, "_warned", [])
+    monkeypatch.setattr(_hybrid, "_warned", [])
     solve(lambda t, y: [-y[0]], (0, 1), [1.0], events=lost, guard_scale=0.1)
     solve(lambda t, y: [-y[0]], (0, 1), [1.0], events=lost, record=False)
-    assert hybrid._warned == []
+    assert _hybrid._warned == []
 
 
 def test_the_collision_as_text_has_the_switches_of_the_engine() -> None:
