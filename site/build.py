@@ -50,15 +50,16 @@ OWN = {FOLDER / "index.md": "index.md", FOLDER / "tutorial.md": "tutorial.ipynb"
 BELOW = {"notebooks/README.md": "*", "notebooks-data/README.md": "*/README"}
 #: The pages of the reference of Python, and the modules whose names they have.
 REFERENCE = {
-    "Collisions": ("collisions", "_laws", "gaining"),
-    "Impacts in SI units": ("impacts",),
-    "Boundaries and regions": ("atlases", "stacks"),
-    "Maps and sweeps": ("maps", "sweeps"),
-    "Time steps, fits and tables": ("timesteps", "fits", "tables"),
-    "The paper, and studies": ("studies",),
-    "Systems of your own": ("hybrid", "_systems", "_solutions", "_derivatives", "_compiled"),
-    "Systems of formulas": ("formulas", "many", "_recorded", "_sympy"),
-    "Families of systems": ("families", "family_stacks"),
+    "Collisions": ("_collisions", "_laws", "_gaining"),
+    "Impacts in SI units": ("_impacts",),
+    "Boundaries and regions": ("_atlases", "_stacks"),
+    "Maps and sweeps": ("_maps", "_sweeps"),
+    "Time steps, fits and tables": ("_timesteps", "_fits", "_tables"),
+    "The paper, and studies": ("_studies",),
+    "Systems of your own": ("_hybrid", "_systems", "_solutions", "_derivatives", "_compiled"),
+    "Systems of formulas": ("_formulas", "_many", "_recorded", "_sympy"),
+    "Families of systems": ("_families", "_family_stacks"),
+    "Periodic orbits": ("_orbits",),
     "The explorer, and errors": ("_explorer", "_native"),
 }
 
