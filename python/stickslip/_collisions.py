@@ -479,15 +479,17 @@ def collide(
     atol: float | None = None,
     law: Law | None = None,
     tangential_damping: float = 0.0,
+    e_n: float | None = None,
 ) -> Collision:
     """One collision, with every switch.
 
     kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with
     the friction mu, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as for
-    homogeneous spheres. damping: scaled damping, 0 or above. method: "exact", "dop853", "dopri5",
-    or "auto", which is exact unless a tolerance is given. rtol, atol: tolerances of a step of the integrators. law: the contact law, a name of `laws`
-    or its terms; the paper's if there is none. tangential_damping: (gamma_t/gamma_n)/alpha of a law,
-    0 or above.
+    homogeneous spheres. damping: scaled damping, 0 or above; or e_n: the coefficient of normal
+    restitution that it makes, above 0, at most 1. method: "exact", "dop853", "dopri5", or "auto",
+    which is exact unless a tolerance is given. rtol, atol: tolerances of a step of the
+    integrators. law: the contact law, a name of `laws` or its terms; the paper's if there is none.
+    tangential_damping: (gamma_t/gamma_n)/alpha of a law, 0 or above.
 
     Raises ValueError for parameters out of range, and ComputationError where there is no result.
 
@@ -498,8 +500,11 @@ def collide(
     (6,)
     >>> collide(63, ratio=0.7).itinerary
     '+o-o+o-'
+    >>> round(collide(63, 0.5, e_n=0.8).eps_n, 12)
+    0.8
     """
     psi = _psi(psi, ratio, mu, alpha)
+    damping = _laws.damping_of(damping, e_n, law)
     for name, value in (("kappa", kappa), ("psi", psi), ("damping", damping)):
         if np.ndim(value):
             raise TypeError(f"{name} is an array; expected a number, or use collide_many")

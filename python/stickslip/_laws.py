@@ -87,6 +87,15 @@ def restitution(e_n: float, law: Law | None = None) -> Restitution:
     return Restitution(**fields, keywords=keywords)
 
 
+def damping_of(damping: float, e_n: float | None, law: Law | None) -> float:
+    """The scaled damping that is given, by itself or as the normal restitution that it makes."""
+    if e_n is None:
+        return damping
+    if damping != 0.0:
+        raise ValueError("damping and e_n are both given; expected one of them")
+    return restitution(e_n, law).damping
+
+
 def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
     """The law as the compiled module takes it."""
     if law is None:

@@ -16,6 +16,7 @@ from stickslip._axes import svg
 from stickslip._progress import Progress, reported
 from stickslip._collisions import _threads
 from stickslip._impacts import Bodies
+from stickslip._laws import damping_of
 
 
 if TYPE_CHECKING:
@@ -169,6 +170,7 @@ def table(
     psi: tuple[float, float],
     damping: float = 0.0,
     *,
+    e_n: float | None = None,
     bound: float = 1e-8,
     regions: bool = False,
     threads: int | None = None,
@@ -176,7 +178,7 @@ def table(
 ) -> RestitutionTable:
     """Makes a table of eps_t whose error is below a bound everywhere.
 
-    kappa, psi: intervals, above 0. bound: 1e-12 to 1e-3. regions: whether the table has the regions
+    kappa, psi: intervals, above 0. damping, e_n: as in `collide`. bound: 1e-12 to 1e-3. regions: whether the table has the regions
     of the atlas too. threads: 1 to 1024, or None for one for each core; results do not depend on
     it. progress: called now and then with the steps done and all that are known; True shows a bar on
     stderr. The contact law is the paper's.
@@ -188,7 +190,7 @@ def table(
     >>> bool(abs(made.eps_t(1.5, 1.2) - eps_t(1.5, 1.2)) < 1e-6)
     True
     """
-    window = _interval(kappa), _interval(psi), float(damping)
+    window = _interval(kappa), _interval(psi), float(damping_of(damping, e_n, None))
     with reported(progress, "table") as report:
         native = _native.RestitutionTable.make(
             *window, float(bound), bool(regions), _threads(threads), report

@@ -129,6 +129,17 @@ def test_shapes_and_types() -> None:
         len(stickslip.collide_many(18, 0.4))
 
 
+def test_normal_restitution_in_place_of_damping() -> None:
+    found = stickslip.collide(63, 0.5, e_n=0.8)
+    assert found.damping == stickslip.restitution(0.8).damping
+    linear = stickslip.collide(63, 0.5, e_n=0.8, law="gran/hooke/history")
+    assert linear.eps_n == pytest.approx(0.8, abs=1e-12)
+    with pytest.raises(ValueError, match="damping and e_n are both given"):
+        stickslip.collide(63, 0.5, 0.1, e_n=0.8)
+    with pytest.raises(ValueError, match="e_n"):
+        stickslip.collide(63, 0.5, e_n=1.5)
+
+
 def test_bad_parameters_are_named() -> None:
     for arguments, words in [
         ((-1, 0.5), "kappa = -1"),

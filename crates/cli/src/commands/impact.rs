@@ -11,7 +11,7 @@ use stickslip_files::input::{law, parameter};
 use stickslip_files::output::csv::Rows;
 use stickslip_files::output::impact_rows::{self, EVENTS};
 use stickslip_files::output::json;
-use stickslip_files::output::picture::PictureFile;
+use stickslip_files::output::picture::{AnimationFile, PictureFile};
 use stickslip_model::spheres::quantity::{self, Quantity};
 use stickslip_model::spheres::{Encounter, ImpactReport};
 use stickslip_model::{CollisionFailure, Engine, Law, document};
@@ -58,6 +58,11 @@ pub struct ImpactArguments {
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
+
+    /// Animation of the same picture
+    #[arg(long, value_name = "FILE.gif", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(value_parser = files::animation())]
+    pub animate: Option<AnimationFile>,
 
     /// The course of one impact.
     #[command(flatten)]
@@ -120,9 +125,10 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     let name = arguments.law.as_deref();
     let files = arguments.batch.files(&[("--bodies", bodies.as_deref()), law_file(name)])?;
     let inputs = [("FILE.json", file.as_deref()), law_file(name)];
-    let plot = arguments.plot.as_ref();
-    require_different(&[plotted(plot)], &inputs)?;
-    let course = arguments.course.file(&[plotted(plot)], &inputs)?;
+    let animated = ("--animate", arguments.animate.as_ref().map(AnimationFile::path));
+    let outputs = [plotted(arguments.plot.as_ref()), animated];
+    require_different(&outputs, &inputs)?;
+    let course = arguments.course.file(&outputs, &inputs)?;
     let law = law::by_name_or_file(name)?;
     let engines = Engines::new(name, law, &arguments.method)?;
     if let Some(files) = files {
@@ -143,15 +149,17 @@ fn one(
 ) -> Result<(), Failure> {
     let contact = encounter.contact();
     let failed = |source| CollisionFailure::new(&contact, source);
-    let plot = arguments.plot.as_ref();
-    if plot.is_some() && encounter.is_central() {
-        let reason = "--plot: nothing is tangential in a central impact; expected another impact, \
+    let (plot, animate) = (arguments.plot.as_ref(), arguments.animate.as_ref());
+    let drawn = plot.map(|_| "--plot").or(animate.map(|_| "--animate"));
+    if let Some(option) = drawn.filter(|_| encounter.is_central()) {
+        let reason = "nothing is tangential in a central impact; expected another impact, \
                       or --course, which has the normal force";
-        return Err(Failure::Usage(reason.to_owned()));
+        return Err(Failure::Usage(format!("{option}: {reason}")));
     }
     plot.map_or(Ok(()), PictureFile::probe)?;
+    animate.map_or(Ok(()), AnimationFile::probe)?;
     course.map_or(Ok(()), Course::probe)?;
-    let (collision, statistics, history) = if plot.is_some() || course.is_some() {
+    let (collision, statistics, history) = if drawn.is_some() || course.is_some() {
         let (collision, statistics, history) = engine.followed(contact).map_err(failed)?;
         (collision, statistics, Some(history))
     } else {
@@ -165,7 +173,11 @@ fn one(
         let draw =
             |plot: &PictureFile| plot.write(Ok(pictures::collision::draw_impact(&impact, history)));
         let picture = plot.map(draw).transpose()?;
-        deliver(picture.into_iter().chain(course.transpose()?), "")?;
+        let film = |file: &AnimationFile| {
+            file.write(pictures::collision::frames_of_impact(&impact, history))
+        };
+        let animation = animate.map(film).transpose()?;
+        deliver(picture.into_iter().chain(animation).chain(course.transpose()?), "")?;
     }
     let statistics = statistics.as_ref();
     print(|out| match arguments.format {

@@ -15,6 +15,7 @@ use stickslip_practice::tables::{self, Document, Settings, Table, Verification, 
 use crate::error::Failure;
 use crate::output::console::{deliver, print};
 use crate::output::text::pairs;
+use crate::shared::collision::damping_for;
 use crate::shared::files::require_different;
 use crate::shared::study::refused;
 use crate::shared::threads::ThreadsArguments;
@@ -41,10 +42,16 @@ pub struct TableArguments {
     #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
     pub damping: Option<f64>,
 
+    /// Coefficient of normal restitution, instead of --damping; above 0, at most 1
+    #[arg(long, value_name = "E", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::NormalRestitution.parse(text))]
+    #[arg(conflicts_with = "damping")]
+    pub e_n: Option<f64>,
+
     /// JSON file of two bodies as `impact` reads it, for a table over velocities; motions in it are
     /// not used
     #[arg(long, value_name = "FILE.json", help_heading = "Window of velocities")]
-    #[arg(conflicts_with_all = ["kappa", "psi", "damping"], requires_all = ["normal", "tangential"])]
+    #[arg(conflicts_with_all = ["kappa", "psi", "damping", "e_n"], requires_all = ["normal", "tangential"])]
     pub bodies: Option<PathBuf>,
 
     /// Interval of the normal velocity g_n of the surfaces in m/s, with --bodies; above 0
@@ -111,14 +118,18 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
 
 /// The window that the options give: of κ and ψ, or of velocities.
 fn window(arguments: &TableArguments) -> Result<Window, Failure> {
-    let TableArguments { kappa, psi, damping, bodies, normal, tangential, .. } = arguments;
+    let TableArguments { kappa, psi, damping, e_n, bodies, normal, tangential, .. } = arguments;
     match (bodies, normal, tangential, kappa, psi) {
         (Some(file), &Some(normal_m_per_s), &Some(tangential_m_per_s), _, _) => {
             let pair = read_pair(file, Law::PAPER)?;
             Ok(Window::Velocities { pair, normal_m_per_s, tangential_m_per_s })
         }
         (None, _, _, &Some(kappa), &Some(psi)) => {
-            Ok(Window::Scaled { kappa, psi, damping: damping.unwrap_or(0.0) })
+            let damping = match *e_n {
+                Some(e_n) => damping_for(Law::PAPER, e_n)?,
+                None => damping.unwrap_or(0.0),
+            };
+            Ok(Window::Scaled { kappa, psi, damping })
         }
         // The parser of the options asks for either.
         _ => {

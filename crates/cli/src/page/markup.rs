@@ -19,7 +19,26 @@ pub fn markup(text: &str) -> String {
         // Writing to a string cannot fail.
         let _ = match tag {
             Some(tag) => write!(html, "<{tag}>{text}</{tag}>"),
-            None => write!(html, "{text}"),
+            None => write!(html, "{}", with_powers(&text)),
+        };
+    }
+    html
+}
+
+/// `text` with numbers such as 2e-13 as 2×10⁻¹³, which is the notation of tables and pictures.
+fn with_powers(text: &str) -> String {
+    let mut parts = text.split('e');
+    let mut html = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (sign, digits) = part.strip_prefix('-').map_or(("", part), |digits| ("−", digits));
+        let end = digits.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(digits.len());
+        let (exponent, rest) = digits.split_at(end);
+        let is_number = html.ends_with(|letter: char| letter.is_ascii_digit());
+        // Writing to a string cannot fail.
+        let _ = if is_number && !exponent.is_empty() {
+            write!(html, "×10<sup>{sign}{exponent}</sup>{rest}")
+        } else {
+            write!(html, "e{part}")
         };
     }
     html
@@ -42,6 +61,10 @@ mod tests {
         assert_eq!(
             markup("`collide --psi <P>` a_b"),
             "<code>collide --psi &#60;P&#62;</code> a<sub>b</sub>"
+        );
+        assert_eq!(
+            markup("within 8.3e-13, to 1e8 steps; `1e-3`; e5 eels, 2e"),
+            "within 8.3×10<sup>−13</sup>, to 1×10<sup>8</sup> steps; <code>1e-3</code>; e5 eels, 2e"
         );
     }
 }

@@ -7,6 +7,7 @@ use assert_cmd::cargo::cargo_bin;
 use roxmltree::{Document, Node};
 
 use crate::Workspace;
+use crate::impact::example;
 
 /// The words of a text element, with its subscripts and superscripts.
 fn words(node: Node<'_, '_>) -> String {
@@ -346,6 +347,10 @@ fn collisions_are_animated() {
     assert_eq!(ran.code, 2);
     assert!(ran.stderr.contains("expected a name that ends in .gif"), "{}", ran.stderr);
     assert_eq!(workspace.run(&format!("{line} a.gif --course a.gif")).code, 2);
+    let spheres = example("steel_spheres.json");
+    let ran = workspace.run(&format!("impact {} --animate b.gif", spheres.display()));
+    assert_eq!((ran.code, ran.said.as_str()), (0, "wrote b.gif\n"), "{}", ran.stderr);
+    assert!(fs::read(workspace.path("b.gif")).unwrap().starts_with(b"GIF89a"));
 }
 
 /// Too few files may be open for the outputs.

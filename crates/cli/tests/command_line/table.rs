@@ -35,6 +35,9 @@ fn one_run_writes_all_formats() {
     let ran = stickslip(&format!("table {WINDOW} --regions --threads 1 --out {other}"));
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     assert_eq!(workspace.read("o.json"), workspace.read("t.json"));
+    // The damping is given by the normal restitution that it makes.
+    let ran = stickslip(&format!("table {WINDOW} --e-n 0.8 --out {other}"));
+    assert!(ran.stdout.contains("0.8"), "{}{}", ran.stdout, ran.stderr);
 }
 
 #[test]
@@ -47,6 +50,7 @@ fn what_cannot_be_is_refused() {
         ("--kappa 2:1 --out", "kappa"),
         ("--psi 0:1 --out", "psi"),
         ("--damping -1 --out", "damping"),
+        ("--damping 1 --e-n 0.5 --out", "--e-n"),
         ("--prefix 1a --out", "prefix"),
         ("--out x.csv --out", "FILE.json, FILE.npz or FILE.h"),
         ("--out ./t.json --out t.json --out", "t.json"),

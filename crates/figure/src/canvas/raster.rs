@@ -1,7 +1,11 @@
 //! Pictures as PNG and GIF.
 
+use std::collections::HashMap;
+use std::mem;
 use std::sync::Arc;
 
+use color_quant::NeuQuant;
+use gif::{Encoder, EncodingError, Frame, Repeat};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
@@ -28,31 +32,53 @@ pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
 }
 
 /// Pictures of one size as a GIF file, which shows them one after another, again and again, with
-/// one pixel for each pixel of the SVG.
+/// one pixel for each pixel of the SVG. The colours of all of them are those of the last one.
 ///
 /// # Errors
 /// As [`png()`], also without a picture or if GIF does not allow the size. [`FigureError::Gif`]: a
-/// picture is larger than the first one.
+/// picture has another size than the last one.
 pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureError> {
-    /// How hard 256 colours are looked for, from 1, the best, to 30.
+    /// How hard 255 colours are looked for, from 1, the best, to 30.
     const SPEED: i32 = 10;
-    let mut pictures = pictures.into_iter().map(|picture| pixels(&picture, 1.0));
-    let Some(first) = pictures.next().transpose()? else {
+    /// The colour of a pixel that stays as it is in the picture before.
+    const UNCHANGED: u8 = 255;
+    let pictures: Vec<_> = pictures.into_iter().collect();
+    let Some((last, others)) = pictures.split_last() else {
         return Err(FigureError::Size { width: 0.0, height: 0.0 });
     };
+    let last = pixels(last, 1.0)?;
     let side = |pixels: u32| u16::try_from(pixels).map_err(|_| FigureError::Memory);
-    let (width, height) = (side(first.width())?, side(first.height())?);
+    let (width, height) = (side(last.width())?, side(last.height())?);
+    let palette = NeuQuant::new(SPEED, usize::from(UNCHANGED), last.data());
     let mut file = Vec::new();
-    let mut encoder = gif::Encoder::new(&mut file, width, height, &[])?;
-    encoder.set_repeat(gif::Repeat::Infinite)?;
-    let mut next = Some(first);
-    while let Some(pixels) = next {
-        next = pictures.next().transpose()?;
-        let (width, height) = (side(pixels.width())?, side(pixels.height())?);
-        let mut pixels = pixels.take_demultiplied();
-        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut pixels, SPEED);
-        frame.delay = PAUSES[usize::from(next.is_none())];
-        encoder.write_frame(&frame)?;
+    let mut encoder = Encoder::new(&mut file, width, height, &palette.color_map_rgb())?;
+    encoder.set_repeat(Repeat::Infinite)?;
+    let mut indices = HashMap::new();
+    let mut shown = vec![UNCHANGED; last.pixels().len()];
+    let drawn = others.iter().map(|picture| pixels(picture, 1.0)).map(|drawn| (drawn, PAUSES[0]));
+    for (pixels, delay) in drawn.chain([(Ok(last), PAUSES[1])]) {
+        let pixels = pixels?;
+        if [pixels.width(), pixels.height()] != [width, height].map(u32::from) {
+            return Err(EncodingError::FrameBufferTooSmallForDimensions.into());
+        }
+        let (colours, _) = pixels.data().as_chunks::<4>();
+        let changes = colours.iter().zip(&mut shown).map(|(colour, shown)| {
+            let index = *indices.entry(*colour).or_insert_with(|| {
+                // One of 255.
+                palette.index_of(colour).try_into().unwrap_or_default()
+            });
+            if mem::replace(shown, index) == index { UNCHANGED } else { index }
+        });
+        let buffer = changes.collect();
+        let transparent = Some(UNCHANGED);
+        encoder.write_frame(&Frame {
+            width,
+            height,
+            delay,
+            transparent,
+            buffer,
+            ..Frame::default()
+        })?;
     }
     drop(encoder);
     Ok(file)

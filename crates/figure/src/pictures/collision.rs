@@ -27,40 +27,62 @@ const LEGEND_AT: (f64, f64) = (80.0, 50.0);
 pub const FORCE: &str = "force in units of m β^{2/5} g_n^{6/5}";
 /// The name of the axis of time.
 pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
+/// The names of the axes of an impact.
+const SI_NAMES: [&str; 3] = ["force [N]", "time [s]", "velocity of the surfaces [m/s]"];
 
 /// Draws `collision`, whose course is `history`.
 #[must_use]
 pub fn draw(collision: &Collision, history: &History) -> Svg {
-    let [force, time] = axes(&collision.contact);
-    let course = Course::new(collision, history, FORCES.width);
-    panels(&title(collision), &course, [force, time, "velocity w = (α/μ) g_t/g_n"])
+    let (course, names) = scaled(collision, history);
+    panels(&title(collision), &course, names)
 }
 
-/// The same picture at successive moments, up to which it is drawn, for an animation: the moments
-/// are evenly spaced, and the last one is the end of contact.
+/// The picture of [`draw`] at successive moments, up to which it is drawn, for an animation: the
+/// moments are evenly spaced, and the last one is the end of contact.
 pub fn frames(collision: &Collision, history: &History) -> impl Iterator<Item = Svg> {
-    let [force, time] = axes(&collision.contact);
-    let title = title(collision);
-    let whole = Course::new(collision, history, FORCES.width);
-    (1..=FRAMES).filter_map(move |frame| {
-        let moment = history.at(history.duration() * (f64::from(frame) / f64::from(FRAMES)))?;
-        let course = whole.clone().until(moment);
-        Some(panels(&title, &course, [force, time, "velocity w = (α/μ) g_t/g_n"]))
-    })
+    let (course, names) = scaled(collision, history);
+    successive(title(collision), course, names, history)
 }
 
 /// Draws an impact that is not central, whose course is `history`, in SI units.
 #[must_use]
 pub fn draw_impact(report: &ImpactReport, history: &History) -> Svg {
+    panels(&title(&report.collision), &in_si(report, history), SI_NAMES)
+}
+
+/// The picture of [`draw_impact`] at successive moments, as [`frames`].
+pub fn frames_of_impact(report: &ImpactReport, history: &History) -> impl Iterator<Item = Svg> {
+    successive(title(&report.collision), in_si(report, history), SI_NAMES, history)
+}
+
+/// The course of a collision in its own units, and the names of its axes.
+fn scaled<'a>(collision: &Collision, history: &'a History) -> (Course<'a>, [&'static str; 3]) {
+    let [force, time] = axes(&collision.contact);
+    (Course::new(collision, history, FORCES.width), [force, time, "velocity w = (α/μ) g_t/g_n"])
+}
+
+/// The course of an impact in SI units.
+fn in_si<'a>(report: &ImpactReport, history: &'a History) -> Course<'a> {
     let Encounter { impact, .. } = &report.encounter;
     let units = Units {
         time: impact.time_unit_s,
         force: impact.force_unit_n(),
         velocity: impact.velocity_m_per_s(1.0),
     };
-    let course = Course::new(&report.collision, history, FORCES.width).in_units(units);
-    let names = ["force [N]", "time [s]", "velocity of the surfaces [m/s]"];
-    panels(&title(&report.collision), &course, names)
+    Course::new(&report.collision, history, FORCES.width).in_units(units)
+}
+
+/// The panels of a course up to successive moments.
+fn successive(
+    title: String,
+    course: Course<'_>,
+    names: [&'static str; 3],
+    history: &History,
+) -> impl Iterator<Item = Svg> {
+    (1..=FRAMES).filter_map(move |frame| {
+        let moment = history.at(history.duration() * (f64::from(frame) / f64::from(FRAMES)))?;
+        Some(panels(&title, &course.clone().until(moment), names))
+    })
 }
 
 /// Draws the panels of a course, with the names of the axes of force, time and velocity.
