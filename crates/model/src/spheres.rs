@@ -16,8 +16,8 @@ pub(crate) mod surface;
 mod units;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
-pub use encounter::{Encounter, EncounterError, Motion, WallMotion};
-pub use forces::{Constants, Forces, InvalidForces};
+pub use encounter::{Encounter, Motion, WallMotion};
+pub use forces::{Constants, Forces};
 pub use moment::ForceSnapshot;
 pub use nalgebra::Vector3;
 pub use observed::Observed;

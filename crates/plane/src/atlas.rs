@@ -38,7 +38,7 @@ pub use document::{
     BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,
     Meeting, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
 };
-pub use error::{AtlasError, LabelError};
+pub use error::AtlasError;
 pub use frame::{Frame, RatioRange};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};

@@ -1,11 +1,11 @@
 //! Collisions over the (κ, ψ) plane, as a family that the tracer can follow.
 
-use stickslip_model::exact::{self, ExactError};
+use stickslip_model::exact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{Contact, Engine, InvalidValue, Law};
+use stickslip_model::{CollisionError, Contact, Engine, InvalidValue, Law};
 use stickslip_solver::margin::Margin;
-use stickslip_solver::{Dop853, Options, Outcome, Start};
+use stickslip_solver::{Dop853, Options, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
 };
@@ -78,20 +78,6 @@ pub enum CollisionFamily {
     General(GeneralFamily),
     /// Collisions with any law, with labels that also say whether |ε_t| is above 1.
     Gaining(GainingFamily),
-}
-
-/// A collision of a family cannot be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CollisionFamilyError {
-    /// The exact solution failed.
-    #[error(transparent)]
-    Exact(#[from] ExactError),
-    /// The integration failed.
-    #[error("{}", .0.error)]
-    Integrated(#[from] FamilyError),
-    /// The integration stopped before the end of contact.
-    #[error("the integration stopped before the end of contact: {0:?}")]
-    Unfinished(Outcome),
 }
 
 impl CollisionPlane {
@@ -334,45 +320,50 @@ fn fired(
     family: &HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>,
     point: &Point,
     itinerary: Itinerary,
-) -> Result<CollisionLabel, CollisionFamilyError> {
+) -> Result<CollisionLabel, CollisionError> {
     if let Itinerary::Fires(guards) = itinerary {
         return Ok(events(&guards));
     }
     Err(match family.outcome(point) {
-        Ok(outcome) => CollisionFamilyError::Unfinished(outcome),
-        Err(error) => FamilyError { point: *point, error }.into(),
+        Ok((outcome, time)) => CollisionError::Unfinished { outcome, time },
+        Err(error) => error.into(),
     })
+}
+
+/// The error of a run; its place is known.
+fn of_run(error: FamilyError) -> CollisionError {
+    error.error.into()
 }
 
 impl Family for CollisionFamily {
     type Label = CollisionLabel;
     type Margin = Margin;
-    type Error = CollisionFamilyError;
+    type Error = CollisionError;
 
-    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionFamilyError> {
+    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => {
                 CollisionEvent::label(&exact::collide(plane.contact_or_any(point))?)
             }
-            Self::Integrated(family) => fired(family, point, family.label(point)?)?,
+            Self::Integrated(family) => fired(family, point, family.label(point).map_err(of_run)?)?,
             Self::General(family) => family.label(point),
             Self::Gaining(family) => family.label(point)?,
         })
     }
 
-    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionFamilyError> {
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => exact::margin(&plane.contact_or_any(point), margin)?,
-            Self::Integrated(family) => family.margin(point, margin)?,
+            Self::Integrated(family) => family.margin(point, margin).map_err(of_run)?,
             Self::General(family) => family.margin(point, margin),
             Self::Gaining(family) => family.margin(point, margin)?,
         })
     }
 
-    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionFamilyError> {
+    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => exact::moved(&plane.contact_or_any(point), margin)?,
-            Self::Integrated(family) => family.moved(point, margin)?,
+            Self::Integrated(family) => family.moved(point, margin).map_err(of_run)?,
             Self::General(family) => {
                 family.near_miss(point, margin).map_or_else(|| margin.clone(), |(moved, _)| moved)
             }
@@ -403,17 +394,14 @@ impl Family for CollisionFamily {
         }
     }
 
-    fn free_run(
-        &self,
-        point: &Point,
-    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<CollisionLabel, Margin>, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => {
                 let found = exact::margins(&plane.contact_or_any(point))?;
                 FreeRun { label: events(&found.fired), margins: found.near_misses }
             }
             Self::Integrated(family) => {
-                let FreeRun { label, margins } = family.free_run(point)?;
+                let FreeRun { label, margins } = family.free_run(point).map_err(of_run)?;
                 FreeRun { label: fired(family, point, label)?, margins }
             }
             Self::General(family) => family.free_run(point),

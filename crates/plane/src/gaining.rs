@@ -96,9 +96,8 @@ fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaini
     };
     let surveyor = Surveyor { options, executor: InParallel, watch };
     let family = plane.gaining();
-    let atlas = surveyor
-        .atlas(&family, &plane.window())
-        .map_err(|error| AtlasError::of_atlas(&plane, error))?;
+    let atlas =
+        surveyor.atlas(&family, &plane.window()).map_err(|error| AtlasError::of(&plane, error))?;
     Ok(Gaining { frame, tolerance, plane, family, atlas })
 }
 

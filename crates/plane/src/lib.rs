@@ -56,7 +56,7 @@ pub mod sweep;
 pub mod tile;
 
 pub use chart::Chart;
-pub use family::{CollisionFamily, CollisionFamilyError, CollisionPlane};
+pub use family::{CollisionFamily, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
 pub use label::{CollisionEvent, CollisionLabel};
 pub use oblique::Oblique;

@@ -1,6 +1,6 @@
 //! The collisions of a grid, computed in parallel.
 
-use std::ops;
+use std::{fmt, ops};
 
 use rayon::prelude::*;
 use stickslip_model::{CollisionError, Engine, InvalidValue};
@@ -8,35 +8,9 @@ use stickslip_model::{CollisionError, Engine, InvalidValue};
 use crate::grid::{Grid, Quantity};
 use crate::tile::{NO_COUNT, NO_EPS_T, Tile};
 
-/// The reason why a point of a grid has no result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PointError {
-    /// No collision has these parameters.
-    #[error(transparent)]
-    Parameter(#[from] InvalidValue),
-    /// The collision cannot be computed.
-    #[error(transparent)]
-    Engine(#[from] CollisionError),
-    /// The grid has no such point.
-    #[error("point {index} of a map of {points} points")]
-    Outside {
-        /// The number of the point.
-        index: usize,
-        /// The number of all points.
-        points: usize,
-    },
-    /// The number of switches does not fit into a [`Tile`].
-    #[error("{count} switches; a map holds up to 2147483647")]
-    Count {
-        /// The number of switches.
-        count: usize,
-    },
-}
-
 /// The points of a map that have no result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("kappa = {kappa:?}, psi = {psi:?}: {error}")]
-pub struct Failed {
+#[derive(Clone, Debug, PartialEq)]
+pub struct FailedPoints {
     /// The number of points without a result.
     pub points: usize,
     /// κ at the first of them.
@@ -44,7 +18,13 @@ pub struct Failed {
     /// ψ at the first of them.
     pub psi: f64,
     /// The reason why the first of them has no result.
-    pub error: PointError,
+    pub error: CollisionError,
+}
+
+impl fmt::Display for FailedPoints {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "kappa = {:?}, psi = {:?}: {}", self.kappa, self.psi, self.error)
+    }
 }
 
 /// Computes successive points of `grid` on the threads of the current rayon pool.
@@ -68,15 +48,17 @@ pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
 /// The tangential restitution and the number of switches at a point of `grid`.
 ///
 /// # Errors
-/// [`PointError`] says why the point has no result.
-pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), PointError> {
+/// [`CollisionError`] says why the point has no result, also if the grid does not have it.
+pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), CollisionError> {
     if index >= grid.points() {
-        return Err(PointError::Outside { index, points: grid.points() });
+        let expected = format!("a point of a map of {}", grid.points());
+        return Err(InvalidValue::new("point", index, expected).into());
     }
     let (column, row) = grid.cell(index);
     let (collision, _) = engine.collide(grid.contact(column, row)?)?;
     let count = collision.switches.len();
-    let switch_count = i32::try_from(count).map_err(|_| PointError::Count { count })?;
+    let switch_count = i32::try_from(count)
+        .map_err(|_| InvalidValue::new("switches", count, "up to 2147483647 in a map"))?;
     Ok((collision.eps_t(), switch_count))
 }
 
@@ -109,11 +91,11 @@ impl FailureCount {
     /// The points without a result, if there are any. The first one is computed again, to learn the
     /// reason.
     #[must_use]
-    pub fn failed(&self, grid: &Grid, engine: Engine) -> Option<Failed> {
+    pub fn failed(&self, grid: &Grid, engine: Engine) -> Option<FailedPoints> {
         let first = self.first?;
         let (column, row) = grid.cell(first);
         let [kappa, psi] = [Quantity::Kappa, Quantity::Psi].map(|q| grid.value(q, column, row));
         let error = point(grid, engine, first).err()?;
-        Some(Failed { points: self.points, kappa, psi, error })
+        Some(FailedPoints { points: self.points, kappa, psi, error })
     }
 }

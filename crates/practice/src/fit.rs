@@ -39,14 +39,13 @@ mod search;
 mod settings;
 mod survey;
 
-use stickslip_model::restitution::RestitutionError;
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{CollisionFailure, InvalidValue, Law};
+use stickslip_model::{CollisionError, CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
 
 pub use bodies::{Bodies, Values};
-pub use columns::{Column, InvalidColumns, data};
+pub use columns::{Column, data};
 pub use course::{Boundary, Course, Curve};
 pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
@@ -227,108 +226,9 @@ impl Fit {
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// A setting or a datum is out of range, or an impact has no scaled parameters.
+    /// Settings or data cannot be used, or an impact has no scaled parameters.
     #[error(transparent)]
     Value(#[from] InvalidValue),
-    /// There are no data, or too many.
-    #[error("{count} data; expected 1 to {}", Settings::MOST_DATA)]
-    Count {
-        /// The number of data.
-        count: usize,
-    },
-    /// Some data have errors, but not all.
-    #[error("row {row}: {name} has no error, and others have one; expected all errors, or none")]
-    NoError {
-        /// The row of a datum without error.
-        row: usize,
-        /// The name of the quantity.
-        name: &'static str,
-    },
-    /// Several quantities are fitted together without errors.
-    #[error(
-        "{first} and {second} have no errors; expected errors, which weigh one quantity against the \
-         other, or one quantity"
-    )]
-    Weights {
-        /// The name of a quantity.
-        first: &'static str,
-        /// The name of another one.
-        second: &'static str,
-    },
-    /// There are fewer data than numbers to be fitted.
-    #[error(
-        "{data} data {} for {free} free numbers; expected at least as many data",
-        if *normal { "of eps_n" } else { "of the tangential motion" }
-    )]
-    TooFew {
-        /// The number of data.
-        data: usize,
-        /// The number of free numbers.
-        free: usize,
-        /// Whether these are data of ε_n.
-        normal: bool,
-    },
-    /// Nothing is fitted, or too much.
-    #[error(
-        "{count} free numbers besides the damping; expected 1 or 2 of kappa (or k_t), mu and \
-         tangential_damping, or damping"
-    )]
-    Free {
-        /// How many there are besides the damping.
-        count: usize,
-    },
-    /// A number is to be fitted twice.
-    #[error("{name} is free twice; expected different names")]
-    Twice {
-        /// The name.
-        name: &'static str,
-    },
-    /// A range is not an interval, or out of range.
-    #[error(
-        "the range {low:?} to {high:?} of {name} cannot be used; expected two rising numbers {} 0, \
-         at most {most:?}",
-        if *open { "above" } else { "from" }
-    )]
-    Range {
-        /// The name of the number.
-        name: &'static str,
-        /// Its lower end.
-        low: f64,
-        /// Its upper end.
-        high: f64,
-        /// The largest upper end.
-        most: f64,
-        /// Whether 0 is left out.
-        open: bool,
-    },
-    /// A damping is free where nothing is damped.
-    #[error(
-        "{name} is free, but has no effect without damping; expected a law with damping, and eps_n below 1"
-    )]
-    Undamped {
-        /// The name.
-        name: &'static str,
-    },
-    /// The stiffness of a spring that is not there is free.
-    #[error("{name} is free, but the law has no spring; expected other free numbers")]
-    NoSpring {
-        /// The name.
-        name: &'static str,
-    },
-    /// The range of the damping has contacts that never end.
-    #[error("damping up to {high:?} has contacts that never end; expected a range below {most:?}")]
-    Endless {
-        /// The upper end of the range.
-        high: f64,
-        /// Where contacts stop to end.
-        most: f64,
-    },
-    /// The damping is both given and fitted.
-    #[error("eps_n = {value:?} decides the damping, which is free; expected one of the two")]
-    DampingTwice {
-        /// ε_n.
-        value: f64,
-    },
     /// An impact cannot be computed.
     #[error(transparent)]
     Contact(#[from] CollisionFailure),
@@ -337,7 +237,7 @@ pub enum FitError {
     Boundaries(#[from] Box<AtlasError>),
     /// No damping has a given ε_n, or it cannot be found.
     #[error(transparent)]
-    Restitution(#[from] RestitutionError),
+    Restitution(#[from] CollisionError),
     /// A search has no places to start from.
     #[error("a search has no places to start from")]
     NoPlaces,

@@ -24,5 +24,5 @@ mod sweep;
 
 pub use parts::Part;
 pub use reproduction::Reproduction;
-pub use section::{Content, DataFile, Objection, Section, headlines};
+pub use section::{Content, DataFile, Section, headlines};
 pub use sweep::Sweep;

@@ -263,7 +263,7 @@ fn free(text: &str) -> Result<Free, String> {
 fn named_range(text: &str) -> Result<(Free, Range), String> {
     let (name, ends) =
         text.split_once('=').ok_or("no name; expected NAME=LO:HI, such as kappa=1:80")?;
-    Ok((free(name)?, range::parse(ends).map_err(|problem| problem.to_string())?))
+    Ok((free(name)?, range::parse(ends)?))
 }
 
 /// What `fit --help` says first.

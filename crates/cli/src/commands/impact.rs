@@ -106,7 +106,7 @@ impl VelocityArguments {
     }
 }
 
-fn read(quantity: &Quantity, text: &str) -> Result<f64, parameter::BadValue> {
+fn read(quantity: &Quantity, text: &str) -> Result<f64, String> {
     parameter::quantity(quantity, text)
 }
 

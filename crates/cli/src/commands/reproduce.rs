@@ -117,7 +117,7 @@ fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Fa
     write(&page, page::html(&sections).as_bytes())?;
     say(format_args!("everything is on {}", page.display()));
     let objection = sections.into_iter().flat_map(|section| section.objections).next();
-    objection.map_or(Ok(()), |objection| Err(Failure::Objection(Box::new(objection))))
+    objection.map_or(Ok(()), |objection| Err(Failure::Objection(objection)))
 }
 
 /// Writes all files of a part into `directory`, each of them at once or not at all.

@@ -160,9 +160,7 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
     let (psi, ratio) = match impact {
         ImpactRange::Psi(psi) => (psi, None),
         ImpactRange::Ratio(ratio) => {
-            let psi = |end| {
-                reduced(&ratio.reduction, end).map_err(|error| Failure::Usage(error.to_string()))
-            };
+            let psi = |end| reduced(&ratio.reduction, end).map_err(Failure::Usage);
             let Range { low, high } = ratio.range;
             (Range { low: psi(low)?, high: psi(high)? }, Some(ratio))
         }

@@ -59,7 +59,7 @@ pub fn damping_for(law: Law, e_n: f64) -> Result<f64, Failure> {
 /// [`Failure::Usage`]: the options do not make a collision.
 pub fn contact(given: &Given) -> Result<Contact, Failure> {
     let recipe = Recipe::new(given, |_| None).map_err(refused)?;
-    recipe.contact(|_| &[]).map_err(|error| Failure::Usage(error.to_string()))
+    recipe.contact(|_| &[]).map_err(Failure::Usage)
 }
 
 /// An interval of ψ or of the impact ratio.

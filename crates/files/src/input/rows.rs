@@ -42,7 +42,7 @@ impl Reading for Recipe {
 
     fn read(&mut self, fields: &ByteRecord) -> Result<Contact, String> {
         // The recipe's columns are columns of the header.
-        self.contact(|column| &fields[column]).map_err(|error| error.to_string())
+        self.contact(|column| &fields[column])
     }
 }
 

@@ -6,14 +6,14 @@ use std::sync::LazyLock;
 use stickslip_model::exact;
 use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Contact, InvalidValue};
-use stickslip_plane::atlas::{Frame, trace};
+use stickslip_plane::atlas::{AtlasError, Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, StackDocument, stack};
+use stickslip_plane::stack::{DampingLayer, DampingStack, StackDocument, stack};
 use stickslip_solver::margin::{Hint, Margin, Place};
 
 use crate::windows::frame;
 
-fn made(dampings: &[f64]) -> Result<DampingStack, DampingStackError> {
+fn made(dampings: &[f64]) -> Result<DampingStack, AtlasError> {
     let frame = frame((5.0, 20.0), (0.2, 2.5));
     stack(frame, dampings, frame.tolerances().usual, SILENT)
 }
@@ -193,7 +193,7 @@ fn a_layer_that_was_not_compared_is_an_objection() {
 #[test]
 fn dampings_ascend_from_above_zero() {
     for dampings in [&[][..], &[0.0, 0.1], &[0.2, 0.1], &[0.1, 0.0, 0.2], &[-0.1, 0.1], &[0.1]] {
-        let refused = DampingStackError::Dampings { dampings: dampings.to_vec() };
+        let refused = AtlasError::Dampings { dampings: dampings.to_vec() };
         assert_eq!(made(dampings).unwrap_err(), refused);
     }
 }

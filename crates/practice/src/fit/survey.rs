@@ -138,7 +138,7 @@ impl Survey {
     pub fn fit_of(&self, values: &[f64]) -> Result<Fit, FitError> {
         let mut settings = self.settings.clone();
         if values.len() != settings.data.len() || self.damping.is_some() {
-            return Err(FitError::Count { count: values.len() });
+            return Err(Settings::bad_count(values.len()).into());
         }
         for (datum, value) in settings.data.iter_mut().zip(values) {
             datum.value = *value;

@@ -37,9 +37,11 @@ fn settings(data: Vec<Datum>) -> Settings {
 
 #[test]
 fn bad_data_are_refused() {
-    assert_eq!(refused(&settings(vec![])), FitError::Count { count: 0 });
+    let message = |settings: &Settings| refused(settings).to_string();
+    assert_eq!(message(&settings(vec![])), "0 data; expected 1 to 10000");
     let one = settings(vec![datum(30.0, 0.1, Some(0.1))]);
-    assert_eq!(refused(&one), FitError::TooFew { data: 1, free: 2, normal: false });
+    let few = "1 data of the tangential motion for 2 free numbers; expected at least as many data";
+    assert_eq!(message(&one), few);
     for (value, error) in [
         (f64::NAN, None),
         (f64::INFINITY, None),
@@ -73,18 +75,21 @@ fn bad_questions_are_refused() {
         refused(&settings)
     };
     let twice = with(&|it| it.free = vec![Free::Mu, Free::Mu]);
-    assert_eq!(twice, FitError::Twice { name: "mu" });
-    assert_eq!(with(&|it| it.free = vec![]), FitError::Free { count: 0 });
+    assert_eq!(twice.to_string(), "mu is free twice; expected different names");
+    let begins = |error: FitError, text: &str| {
+        assert!(error.to_string().starts_with(text), "{error}");
+    };
+    begins(with(&|it| it.free = vec![]), "0 free numbers besides the damping");
     let three = vec![Free::Kappa, Free::Mu, Free::TangentialDamping];
-    assert_eq!(with(&|it| it.free = three.clone()), FitError::Free { count: 3 });
+    begins(with(&|it| it.free = three.clone()), "3 free numbers besides the damping");
     for range in [(0.0, 1.0), (2.0, 1.0), (1.0, 1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
         let invalid = with(&|it| it.ranges.mu = Range { low: range.0, high: range.1 });
-        assert!(matches!(invalid, FitError::Range { name: "mu", .. }), "{range:?}");
+        assert!(names(&invalid, "the range"), "{range:?}: {invalid}");
     }
     assert!(names(&with(&|it| it.level = 1.0), "level"));
     assert!(names(&with(&|it| it.eps_n = Some(1.1)), "eps_n"));
     let undamped = with(&|it| it.free = vec![Free::Kappa, Free::TangentialDamping]);
-    assert_eq!(undamped, FitError::Undamped { name: "tangential_damping" });
+    begins(undamped, "tangential_damping is free, but has no effect without damping");
     let law = oblique::law("yade/FrictPhys_CundallStrack");
     let damping = with(&|it| {
         it.bodies = bodies(law);
@@ -96,7 +101,7 @@ fn bad_questions_are_refused() {
         it.free = vec![Free::Damping, Free::Mu];
         it.ranges.damping.high = 2.0;
     });
-    assert!(matches!(endless, FitError::Endless { .. }), "{endless:?}");
+    begins(endless, "damping up to 2.0 has contacts that never end");
 }
 
 /// As many data as free numbers without errors: there is a fit, but nothing to tell intervals from.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Engine;
 use stickslip_plane::atlas::Atlas;
-use stickslip_plane::sweep::{Failed, FailureCount};
+use stickslip_plane::sweep::FailureCount;
 use stickslip_studies::Study;
 
 use super::sweep::Sweep;
@@ -28,7 +28,7 @@ pub struct Section {
     /// Data beside those of the study.
     pub files: Vec<DataFile>,
     /// What speaks against its results.
-    pub objections: Vec<Objection>,
+    pub objections: Vec<String>,
 }
 
 /// Data for a file.
@@ -49,29 +49,6 @@ pub enum Content {
     Map(Arc<Sweep>),
     /// An atlas.
     Atlas(Arc<Atlas>),
-}
-
-/// Something that speaks against a result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Objection {
-    /// Points of a map have no result.
-    #[error("{file}: {} of {points} points could not be computed; the first, {failed}", failed.points)]
-    Points {
-        /// The file of the map.
-        file: String,
-        /// The number of its points.
-        points: usize,
-        /// The points without a result.
-        failed: Failed,
-    },
-    /// An atlas may be wrong.
-    #[error("{file}: the atlas is complete, but may be wrong: {reason}")]
-    Doubtful {
-        /// The file of the atlas.
-        file: String,
-        /// What its verification found.
-        reason: String,
-    },
 }
 
 /// The main results of all `sections`, a sentence each: the opening of a page that shows them.
@@ -104,8 +81,10 @@ impl Section {
         let mut count = FailureCount::default();
         count.add(0, &sweep.results);
         if let Some(failed) = count.failed(&sweep.grid, Engine::Exact) {
-            let (file, points) = (name.clone(), sweep.grid.points());
-            self.objections.push(Objection::Points { file, points, failed });
+            let (count, points) = (failed.points, sweep.grid.points());
+            self.objections.push(format!(
+                "{name}: {count} of {points} points could not be computed; the first, {failed}"
+            ));
         }
         self.files.push(DataFile { name, title, content: Content::Map(Arc::clone(sweep)) });
         self
@@ -116,7 +95,8 @@ impl Section {
     pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
         if let Some(reason) = atlas.objection() {
-            self.objections.push(Objection::Doubtful { file: name.clone(), reason });
+            let what = "the atlas is complete, but may be wrong";
+            self.objections.push(format!("{name}: {what}: {reason}"));
         }
         self.files.push(DataFile { name, title, content: Content::Atlas(Arc::clone(atlas)) });
         self

@@ -99,7 +99,7 @@ impl Euler {
     }
 }
 
-/// Input from which no subdivision can be made.
+/// Input from which no subdivision can be made, or with which none can be verified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SubdivisionError {
     /// The window's corners are not finite, or not in order.
@@ -155,6 +155,24 @@ pub enum SubdivisionError {
         vertex: usize,
         /// The number of vertices.
         count: usize,
+    },
+    /// The distances from curves are not finite, not above 0, or not in order.
+    #[error(
+        "distances from {nearest:e} to {farthest:e}, expected finite values above 0 in ascending order"
+    )]
+    Distances {
+        /// The least distance.
+        nearest: f64,
+        /// The greatest distance.
+        farthest: f64,
+    },
+    /// The numbers of labels and of points differ.
+    #[error("{labels} labels for {points} points, expected one for each")]
+    Labels {
+        /// The number of points.
+        points: usize,
+        /// The number of labels.
+        labels: usize,
     },
 }
 
