@@ -2,13 +2,12 @@
 
 use smallvec::SmallVec;
 
-mod energy;
-mod finite;
-
 use crate::contact::Contact;
 use crate::phase::{OTHER_SIDE, Phase, Regime, SAME_SIDE, Side};
+
+mod energy;
+
 pub use energy::EnergyLedger;
-pub use finite::NotFinite;
 
 /// The result of one collision in reduced variables, from any engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,5 +143,26 @@ impl Collision {
             ]
         });
         NotFinite::among(results.into_iter().chain(switches))
+    }
+}
+
+/// A result is beyond the range of doubles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name} is not a finite number")]
+pub struct NotFinite {
+    /// The name of the result.
+    pub name: &'static str,
+}
+
+impl NotFinite {
+    /// Checks that all results, given with their names, are finite numbers.
+    ///
+    /// # Errors
+    /// [`NotFinite`] names the first that is not.
+    pub fn among(values: impl IntoIterator<Item = (&'static str, f64)>) -> Result<(), Self> {
+        match values.into_iter().find(|(_, value)| !value.is_finite()) {
+            Some((name, _)) => Err(Self { name }),
+            None => Ok(()),
+        }
     }
 }

@@ -14,7 +14,6 @@
 mod atlas;
 mod axis;
 mod itinerary;
-mod point;
 mod request;
 mod scene;
 mod spheres;

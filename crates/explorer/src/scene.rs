@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::atlas;
 use crate::axis::Axis;
-use crate::point::MapPoint;
+use crate::axis::MapPoint;
 use crate::spheres::{Spheres, SpheresRequest};
 use crate::system::{SystemPlane, SystemRequest};
 

@@ -11,8 +11,8 @@ use stickslip_model::{
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Statistics;
 
+use crate::axis::MapPoint;
 use crate::itinerary;
-use crate::point::MapPoint;
 
 /// The numbers of a moment of a course.
 pub const MOMENT: usize = 8;

@@ -8,8 +8,8 @@ use stickslip_expression::{System, SystemFamily, outcome_name};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 use stickslip_tracer::{DynamicFired, Point};
 
+use crate::axis::MapPoint;
 use crate::itinerary;
-use crate::point::MapPoint;
 
 /// A run as a page asks for it.
 #[derive(Deserialize)]

@@ -9,9 +9,8 @@
 //! Start reading in [`panel`] (axes, and what is drawn against them) and [`mod@svg`] (shapes and
 //! words). Then `ticks` (round values on axes), `legend` (keys and their meanings), `placement`
 //! (places of labels in regions), [`markup`] (texts), [`shape`] and [`style`]
-//! (sizes and colours), `bitmap` (images in a picture) and [`raster`] (a picture as PNG).
+//! (sizes and colours), and [`raster`] (images in a picture, and a picture as PNG).
 
-mod bitmap;
 mod legend;
 pub mod markup;
 pub mod panel;
@@ -23,7 +22,7 @@ pub mod style;
 pub mod svg;
 mod ticks;
 
-pub(crate) use bitmap::Bitmap;
 pub(crate) use legend::Legend;
 pub(crate) use placement::{Cells, place};
+pub(crate) use raster::Bitmap;
 pub(crate) use ticks::rises;

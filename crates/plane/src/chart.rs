@@ -2,8 +2,6 @@
 
 use stickslip_tracer::{Point, Window};
 
-use crate::range::Range;
-
 /// Traced coordinates of the (κ, ψ) plane, in which boundaries bend evenly.
 ///
 /// They are x = ln(κ/κ₀)/w and y = ln(1 + (ψ − ψ₀)/s)/h. Windows of an ordinary shape have the
@@ -103,4 +101,14 @@ impl Chart {
     pub(crate) fn scale(&self, psi: f64) -> f64 {
         self.height * (self.spread - self.psi + psi)
     }
+}
+
+/// An interval of a quantity that is never negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Range {
+    /// Lower end, 0 or above.
+    pub low: f64,
+    /// Upper end, above the lower one.
+    pub high: f64,
 }

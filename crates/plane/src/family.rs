@@ -17,9 +17,9 @@ pub use gaining::GainingFamily;
 pub use general::GeneralFamily;
 
 use crate::chart::Chart;
+use crate::chart::Range;
 use crate::label::{CollisionEvent, CollisionLabel};
 use crate::oblique::Oblique;
-use crate::range::Range;
 use crate::sheet::Sheet;
 
 /// Collisions over a window of two parameters: κ and ψ at one scaled damping, or the velocities of

@@ -5,7 +5,7 @@ use std::fmt;
 use stickslip_model::spheres::BodyPair;
 use stickslip_model::{Contact, InvalidValue, Law, Reduction};
 
-use crate::range::Range;
+use crate::chart::Range;
 
 /// An interval divided into cells of equal width.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use stickslip_tracer::{Node, Point, Window};
 
 use crate::chart::Chart;
-use crate::range::Range;
+use crate::chart::Range;
 
 /// A window of two parameters above 0, and its chart.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -28,8 +28,7 @@
 //! ```
 //!
 //! Start reading here; then, in this order: `settings`, `boundaries` and `chain` (boundaries as
-//! graphs over x), `turns` (where they turn back), `stretch` (coordinates in which roots are
-//! smooth), `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up),
+//! graphs over x, and where they turn back), `stretch` (coordinates in which roots are smooth), `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up),
 //! `verification`.
 
 mod assembly;
@@ -40,13 +39,11 @@ mod chebyshev;
 mod document;
 mod header;
 mod hints;
-mod keys;
 mod settings;
 mod slab;
 mod stretch;
 mod strip;
 mod table;
-mod turns;
 mod verification;
 
 use std::fmt;
@@ -60,7 +57,7 @@ pub use chebyshev::{ACROSS, ALONG};
 #[cfg(feature = "serde")]
 pub use document::{Document, SCHEMA};
 pub use header::require_prefix;
-pub use keys::Keys;
+pub use hints::Keys;
 pub use settings::{Settings, Window};
 pub use stretch::Stretch;
 pub use table::{Arrays, NO_REGION, Table, Verification};

@@ -6,7 +6,7 @@
 //! difference in ε_t, in ε_n and in the energy after the contact. Steps are given as numbers t_c/dt
 //! of steps in the undamped contact time t_c ([`undamped_contact_time`]).
 //!
-//! Start reading here; then, in this order: `scheme` (what codes do in a step), `stepped` (one
+//! Start reading here; then, in this order: `stepped` (what codes do in a step, and one
 //! collision in steps), `settings`, `measure` (errors over impacts and start phases),
 //! `seconds` (times in SI units).
 //!
@@ -19,7 +19,6 @@
 //! point.
 
 mod measure;
-mod scheme;
 mod seconds;
 mod settings;
 mod stepped;
@@ -29,9 +28,9 @@ use stickslip_model::{Collision, CollisionError, CollisionFailure, Contact, Engi
 use stickslip_plane::progress::{Progress, Report};
 
 pub use measure::{Errors, Quantity, Row, Status, Worst};
-pub use scheme::Scheme;
 pub use seconds::{Seconds, rayleigh_time_s};
 pub use settings::Settings;
+pub use stepped::Scheme;
 pub use stepped::{Stepped, step, undamped_contact_time};
 
 /// The name of the layout of the JSON, with its version.

@@ -1,6 +1,6 @@
 //! The energy ledger of a collision.
 
-use super::finite::NotFinite;
+use super::NotFinite;
 
 /// The energy ledger of a collision, in reduced variables: where its energy went.
 ///

@@ -2,9 +2,9 @@
 
 use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
 
+use super::bodies::Surface;
 use super::quantity::{self, Quantity};
-use super::surface::Surface;
-use super::units::Units;
+use super::scaling::Units;
 use crate::engines::error::CollisionError;
 use crate::restitution;
 

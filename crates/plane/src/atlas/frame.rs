@@ -3,8 +3,8 @@
 use stickslip_model::{InvalidValue, Law, Reduction};
 
 use crate::chart::Chart;
+use crate::chart::Range;
 use crate::family::CollisionPlane;
-use crate::range::Range;
 use crate::sheet::{Sheet, ToleranceRange, TooNarrow};
 
 /// The window of an atlas, and what all its collisions have in common.

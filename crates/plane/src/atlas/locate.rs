@@ -7,7 +7,7 @@ use stickslip_tracer::{Location, Point, Window};
 
 use super::regions::Atlas;
 use crate::chart::Chart;
-use crate::range::Range;
+use crate::chart::Range;
 
 /// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]

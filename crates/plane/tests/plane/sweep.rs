@@ -1,7 +1,6 @@
 use rayon::ThreadPoolBuilder;
 use stickslip_model::{CollisionError, Contact, Engine, Tolerances};
-use stickslip_plane::sweep::{FailureCount, compute, point};
-use stickslip_plane::tile::{NO_COUNT, NO_EPS_T};
+use stickslip_plane::sweep::{FailureCount, NO_COUNT, NO_EPS_T, compute, point};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range, Tile};
 
 fn grid(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Grid {

@@ -3,7 +3,7 @@
 use stickslip_plane::Range;
 
 use super::chebyshev::{double_value, value};
-use super::keys::Keys;
+use super::hints::Keys;
 use super::settings::Window;
 use super::stretch::Stretch;
 

@@ -3,7 +3,7 @@
 use stickslip_model::spheres::quantity;
 use stickslip_model::{Contact, GivenValue, InvalidValue, Reduction};
 
-use super::scheme::Scheme;
+use super::stepped::Scheme;
 
 /// The impacts and time steps whose errors are measured.
 #[derive(Clone, Debug, PartialEq)]

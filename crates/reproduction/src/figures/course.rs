@@ -44,7 +44,7 @@ pub fn largest_compression(collision: &Collision) -> f64 {
     0.5 * collision.contact_time
 }
 
-/// The rows of [`super::columns::COURSE`]: a course as it is drawn in a panel `width` pixels wide.
+/// The rows of [`super::section::COURSE`]: a course as it is drawn in a panel `width` pixels wide.
 /// At a switch there are two rows.
 pub fn rows(collision: &Collision, history: &History, width: f64) -> Vec<Vec<Cell>> {
     let course = Course::new(collision, history, width);

@@ -11,10 +11,10 @@ use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, 
 use stickslip_studies::{Column, Study, Table};
 
 use super::boundaries::summary;
-use super::columns::{AXIS, KAPPA, PHASES, SWITCHES};
 use super::points::{Interval, LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
 use super::section::Section;
+use super::section::{AXIS, KAPPA, PHASES, SWITCHES};
 use super::stiffness_map::{StiffnessMap, title};
 use crate::error::ReproductionError;
 

@@ -10,10 +10,10 @@ use stickslip_model::history::History;
 use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
 use stickslip_studies::{Column, Study, Table};
 
-use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use super::course::{followed, rows};
 use super::reproduction::Reproduction;
 use super::section::Section;
+use super::section::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use crate::error::ReproductionError;
 
 /// The title of the part.

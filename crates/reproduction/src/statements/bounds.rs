@@ -12,8 +12,8 @@ use stickslip_studies::paper::{
 };
 use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
-use super::sampling::{each, geometric};
 use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 

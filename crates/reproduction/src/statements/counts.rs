@@ -5,8 +5,8 @@ use stickslip_studies::paper::{MOST_SWITCHES, STIFFNESS, SWITCHES, ratio};
 use stickslip_studies::search::change;
 
 use super::line::{Line, Span};
-use super::sampling::{each, random};
 use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 

@@ -6,8 +6,8 @@ use stickslip_model::{Collision, Regime};
 use stickslip_studies::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ratio};
 use stickslip_studies::search::maximum;
 
-use super::sampling::{each, geometric};
 use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 

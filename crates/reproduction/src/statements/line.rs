@@ -13,9 +13,9 @@ use stickslip_plane::{Chart, CollisionPlane};
 use stickslip_studies::search::change;
 use stickslip_tracer::{Family, Point, TraceOptions, trace};
 
-use super::sampling::geometric;
 use super::spring::Spring;
 use super::statement::Stop;
+use super::statement::geometric;
 use crate::error::ReproductionError;
 
 /// Half the window's width in ln κ.

@@ -7,9 +7,9 @@ use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_solver::Outcome;
 use stickslip_studies::three_parameters::ThreeParameters;
 
-use super::sampling::{each, random};
 use super::spring::Spring;
 use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 

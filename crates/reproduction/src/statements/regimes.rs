@@ -2,8 +2,8 @@
 
 use stickslip_model::{Collision, Regime};
 
-use super::sampling::{each, random};
 use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 

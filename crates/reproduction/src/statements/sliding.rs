@@ -11,8 +11,8 @@ use stickslip_studies::paper::{
 };
 use stickslip_studies::search::change;
 
-use super::sampling::{each, geometric};
 use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 

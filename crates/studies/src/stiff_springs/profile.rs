@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use stickslip_model::exact;
 use stickslip_model::limits::inner;
 
+use super::Settings;
 use super::limit::{self, contact};
-use super::settings::Settings;
 use crate::error::StudyError;
 
 /// Stiffnesses at which collisions are compared, if they are within the interval of the study.

@@ -6,10 +6,8 @@
 //! the largest compression. Two short polynomials therefore give them to rounding, and small
 //! quantities near either end keep their relative accuracy.
 
-mod crest;
 mod meeting;
 mod refined_exit;
-mod refined_onset;
 
 use crate::exact::moment::{At, Half, Moment, Motion, Spring};
 use crate::exact::normal::{ORDER, StickPhase, Trajectory};

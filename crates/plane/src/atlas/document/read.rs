@@ -12,8 +12,8 @@ use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, Regions, switch_count};
 use crate::chart::Chart;
+use crate::chart::Range;
 use crate::family::CollisionPlane;
-use crate::range::Range;
 
 impl TryFrom<Document> for Atlas {
     type Error = DocumentError;
