@@ -173,13 +173,11 @@ impl Failure {
     }
 
     /// Whether the options are wrong.
-    #[must_use]
     pub fn is_usage(&self) -> bool {
         matches!(self, Self::Usage(_) | Self::File(FileError::Option(_)))
     }
 
     /// The exit code: 2 for bad usage or input, 1 for everything that fails later.
-    #[must_use]
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage(_)

@@ -62,7 +62,6 @@ pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
 impl Collision {
     /// A collision that has not been computed yet: its coefficient, velocity and duration are NaN,
     /// it has no switches, and its energies are 0.
-    #[must_use]
     pub fn before(contact: Contact) -> Self {
         Self {
             contact,
@@ -89,13 +88,11 @@ impl Collision {
     }
 
     /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0); −1 is full reversal.
-    #[must_use]
     pub fn eps_t(&self) -> f64 {
         self.final_velocity / self.contact.psi()
     }
 
     /// One character for each phase: `+` and `-` for slip on side +1 and −1, `o` for stick.
-    #[must_use]
     pub fn itinerary(&self) -> String {
         let start = (self.start, self.start_side);
         let entered = self.switches.iter().map(|switch| (switch.to, switch.side));
@@ -112,7 +109,6 @@ impl Collision {
     /// The guards that fired, [`SAME_SIDE`](crate::regularized::SAME_SIDE) or
     /// [`OTHER_SIDE`](crate::regularized::OTHER_SIDE) for each switch, as the
     /// margins of the exact solution name them.
-    #[must_use]
     pub fn fired(&self) -> Vec<usize> {
         let mut side = self.start_side;
         let guard = |switch: &Switch| {

@@ -39,7 +39,6 @@ fn unless_rounding(value: f64, size: f64) -> f64 {
 /// Whether a contact is linear: its normal force is F = x + a v, or x without damping, and the
 /// stiffness of its spring is constant, its history not rescaled, and Coulomb's limit holds for
 /// spring and dashpot together.
-#[must_use]
 pub fn solves(contact: &Contact) -> bool {
     let law = contact.law();
     law.normal == Elastic::Linear

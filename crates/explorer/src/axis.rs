@@ -16,9 +16,6 @@ pub struct Axis {
 
 impl Axis {
     /// Refuses an axis without length, and a logarithmic one that does not begin above 0.
-    ///
-    /// # Errors
-    /// An object whose `error` says what is wrong.
     pub fn check(&self, name: &str) -> Result<(), Value> {
         let Self { low, high, log } = *self;
         let ordered = low.is_finite() && high.is_finite() && low < high;

@@ -120,7 +120,6 @@ impl Engine {
     }
 
     /// The name of the method: `dop853`, `dopri5`, `exact` or `auto`.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Dop853(_) => "dop853",
@@ -131,7 +130,6 @@ impl Engine {
     }
 
     /// The tolerances of an integrator; `None` for [`Self::Exact`] and [`Self::Auto`].
-    #[must_use]
     pub fn tolerances(&self) -> Option<Tolerances> {
         match *self {
             Self::Dop853(tolerances) | Self::Dopri5(tolerances) => Some(tolerances),
@@ -140,7 +138,6 @@ impl Engine {
     }
 
     /// The engine that computes the collision of `contact`: itself, or what [`Self::Auto`] chooses.
-    #[must_use]
     pub fn resolved(self, contact: &Contact) -> Self {
         match self {
             // The range of the exact solution contains the range of the integrators.

@@ -14,7 +14,6 @@ use crate::engines::error::CollisionError;
 
 /// Whether ε_n of the law depends on the velocity: the same damping constant is another scaled
 /// damping a.
-#[must_use]
 pub fn depends_on_velocity(law: Law) -> bool {
     law.damping != Damping::None && critical_damping(law).is_none()
 }
@@ -26,7 +25,6 @@ pub fn depends_on_velocity(law: Law) -> bool {
 /// ζ = −ln ε_n/√(π² + ln² ε_n), in both cases.
 ///
 /// Source: Antypov and Elliott, EPL 94, 50004 (2011).
-#[must_use]
 pub fn critical_damping(law: Law) -> Option<f64> {
     match (law.normal, law.damping) {
         (Normal::Linear, Damping::Linear) => Some(2.0),

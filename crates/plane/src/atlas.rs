@@ -33,8 +33,8 @@ pub use boundary::BoundaryKind;
 pub(crate) use boundary::itinerary;
 #[cfg(feature = "serde")]
 pub use document::{
-    BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,
-    Meeting, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
+    AtlasDocument, AtlasDocumentError, BoundaryEnd, BoundaryFields, ExtremalParameter,
+    ExtremumFields, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
 };
 pub use error::AtlasError;
 pub use frame::{Frame, RatioRange};

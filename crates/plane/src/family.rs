@@ -147,7 +147,6 @@ impl CollisionPlane {
     }
 
     /// The same collisions in other traced coordinates.
-    #[must_use]
     pub fn with_chart(self, chart: Chart) -> Self {
         Self { sheet: Sheet { chart, ..self.sheet }, ..self }
     }
@@ -163,7 +162,6 @@ impl CollisionPlane {
     }
 
     /// The names of the two parameters.
-    #[must_use]
     pub fn names(&self) -> [&'static str; 2] {
         match self.parameters {
             Parameters::Scaled | Parameters::Oblique(_) => Self::SCALED,
@@ -172,37 +170,31 @@ impl CollisionPlane {
     }
 
     /// The window in its traced coordinates.
-    #[must_use]
     pub fn sheet(&self) -> &Sheet {
         &self.sheet
     }
 
     /// The traced coordinates.
-    #[must_use]
     pub fn chart(&self) -> &Chart {
         &self.sheet.chart
     }
 
     /// The traced point of two parameters: κ and ψ, or the velocities.
-    #[must_use]
     pub fn point(&self, x: f64, y: f64) -> Point {
         self.chart().point(x, y)
     }
 
     /// The two parameters of a traced point: the inverse of [`Self::point`].
-    #[must_use]
     pub fn parameters(&self, point: &Point) -> [f64; 2] {
         self.chart().parameters(point)
     }
 
     /// The window in traced coordinates.
-    #[must_use]
     pub fn window(&self) -> Window {
         self.sheet.window()
     }
 
     /// The parameters of the four corners of the window.
-    #[must_use]
     pub fn corners(&self) -> [[f64; 2]; 4] {
         let [x, y] = self.sheet.sides;
         [[x.low, y.low], [x.high, y.low], [x.low, y.high], [x.high, y.high]]
@@ -241,7 +233,6 @@ impl CollisionPlane {
 
     /// The collisions as a family: by the exact solution wherever there is one, which makes a trace
     /// ten times as fast, and by integration elsewhere.
-    #[must_use]
     pub fn family(self) -> CollisionFamily {
         match Engine::Auto.resolved(&self.first) {
             Engine::Exact => CollisionFamily::Exact(self),
@@ -250,7 +241,6 @@ impl CollisionPlane {
     }
 
     /// The collisions as a family that is always integrated. Margins are accurate to about 1e-14.
-    #[must_use]
     pub fn integrated(self) -> CollisionFamily {
         if !self.first.obeys_paper() {
             return CollisionFamily::General(self.general());
@@ -260,7 +250,6 @@ impl CollisionPlane {
     }
 
     /// The collisions, integrated as for any law, with one more boundary: where |ε_t| is 1.
-    #[must_use]
     pub fn gaining(self) -> CollisionFamily {
         CollisionFamily::Gaining(GainingFamily::new(self))
     }

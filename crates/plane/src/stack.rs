@@ -1,22 +1,23 @@
 //! Atlases over the damping, and where their regions are born, merge, split and die.
 //!
-//! Start reading in [`stack()`](fn@stack). `document` is the file of a stack.
+//! Start reading in [`stack()`](fn@stack).
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stickslip_model::InvalidValue;
 use stickslip_tracer::{AtlasOptions, Change, Stack, StackOptions, TraceError, Watch};
+#[cfg(feature = "serde")]
+use stickslip_tracer::{Effect, Meeting};
 
 use crate::atlas::{self, Atlas, AtlasError, Frame, itinerary};
 use crate::family::CollisionPlane;
 use crate::label::CollisionLabel;
 use crate::progress::{InParallel, Progress, Report, SILENT};
 
+/// The name of the layout of its file, with its version.
 #[cfg(feature = "serde")]
-mod document;
-#[cfg(feature = "serde")]
-pub use document::{ChangeFields, EffectFields, LayerFields, MeetingFields, SCHEMA, StackDocument};
+pub const SCHEMA: &str = "stickslip.stack/1";
 
 /// The atlases of a window at several dampings, and what changes between them.
 #[derive(Clone, Debug)]
@@ -176,7 +177,6 @@ fn itineraries(atlas: &Atlas) -> Vec<String> {
 
 impl DampingLayer {
     /// The numbers of regions with each itinerary.
-    #[must_use]
     pub fn region_counts(&self) -> BTreeMap<String, usize> {
         let mut counts = BTreeMap::new();
         for itinerary in itineraries(&self.atlas) {
@@ -189,7 +189,6 @@ impl DampingLayer {
 impl DampingStack {
     /// Why something in the stack may be wrong: the first atlas against which something speaks or
     /// which does not fit the changes, or the first change in doubt.
-    #[must_use]
     pub fn objection(&self) -> Option<String> {
         for layer in &self.layers {
             let at = format!("damping = {:?}", layer.damping);
@@ -206,5 +205,50 @@ impl DampingStack {
             }
         }
         self.changes.iter().find_map(|change| change.objection("dampings"))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl DampingStack {
+    /// The stack in the layout of its file, [`SCHEMA`]. Without damping, and inside the bracket of
+    /// a change, `as_stacked` is `null`.
+    pub fn document(&self) -> serde_json::Value {
+        use serde_json::json;
+
+        let layer = |layer: &DampingLayer| {
+            json!({
+                "damping": layer.damping,
+                "boundaries": layer.atlas.regions.curves().len(),
+                "vertices": layer.atlas.regions.vertices().len(),
+                "regions": layer.region_counts(),
+                "agrees": layer.atlas.report.agrees,
+                "as_stacked": layer.as_stacked,
+            })
+        };
+        let meeting = |meeting: Meeting| {
+            let [kappa, psi] = self.plane.sheet().snapped(&meeting.point);
+            let kind = meeting.kind.name();
+            json!({ "kind": kind, "damping": meeting.value, "kappa": kappa, "psi": psi })
+        };
+        let effect = |effect: &Effect<String>| json!({ "effect": effect.name(), "itinerary": effect.label() });
+        let change = |change: &Change<String>| {
+            json!({
+                "between": change.between,
+                "meeting": change.meeting.map(meeting),
+                "doubtful": change.is_doubtful(),
+                "effects": change.effects.iter().map(effect).collect::<Vec<_>>(),
+            })
+        };
+        let [kappa, psi] = self.plane.sheet().sides;
+        json!({
+            "schema": SCHEMA,
+            "kappa": [kappa.low, kappa.high],
+            "psi": [psi.low, psi.high],
+            "tolerance": self.layers.first().map_or(0.0, |layer| layer.atlas.tolerance),
+            "atlases": self.atlases,
+            "agrees": self.objection().is_none(),
+            "layers": self.layers.iter().map(layer).collect::<Vec<_>>(),
+            "changes": self.changes.iter().map(change).collect::<Vec<_>>(),
+        })
     }
 }

@@ -35,7 +35,6 @@ impl fmt::Display for FailedPoints {
 ///
 /// # Panics
 /// If the results of all points do not fit into memory.
-#[must_use]
 pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
     let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
     points
@@ -83,14 +82,12 @@ impl FailureCount {
     }
 
     /// The number of points without a result.
-    #[must_use]
     pub fn points(&self) -> usize {
         self.points
     }
 
     /// The points without a result, if there are any. The first one is computed again, to learn the
     /// reason.
-    #[must_use]
     pub fn failed(&self, grid: &Grid, engine: Engine) -> Option<FailedPoints> {
         let first = self.first?;
         let (column, row) = grid.cell(first);
@@ -118,7 +115,6 @@ impl Tile {
     /// The tile as bytes: `label`, all ε_t, all counts, and a checksum over everything before it.
     ///
     /// Numbers are little-endian. The label names the map and the place of the tile in it.
-    #[must_use]
     pub fn to_bytes(&self, label: &str) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(Self::length(label, self.eps_t.len()));
         bytes.extend_from_slice(label.as_bytes());
@@ -129,14 +125,12 @@ impl Tile {
     }
 
     /// The number of bytes that a tile of `points` points has with `label`.
-    #[must_use]
     pub fn length(label: &str, points: usize) -> usize {
         label.len() + points * (8 + 4) + 16
     }
 
     /// Reads a tile of `points` points. It is `None` unless [`Self::to_bytes`] wrote `bytes` with
     /// the same label.
-    #[must_use]
     pub fn from_bytes(bytes: &[u8], label: &str, points: usize) -> Option<Self> {
         if points > bytes.len() || bytes.len() != Self::length(label, points) {
             return None;

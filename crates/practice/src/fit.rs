@@ -44,22 +44,21 @@ use stickslip_model::{CollisionError, CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
 
-pub use bodies::{Bodies, Values};
-pub use columns::{Column, data};
-pub use course::{Boundary, Course, Curve};
+pub use bodies::{FittedBodies, Values};
+pub use columns::{MeasuredColumn, data};
+pub use course::{Boundary, FittedCourse, FittedCurve};
 pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
-pub use intervals::{Interval, Piece};
+pub use intervals::{ConfidenceInterval, IntervalPiece};
 pub use normal::DampingFit;
-pub use settings::Settings;
+pub use settings::FitSettings;
 pub use survey::Survey;
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.fit/1";
 
 /// A fit.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Fit {
     /// [`SCHEMA`].
     pub schema: &'static str,
@@ -92,22 +91,21 @@ pub struct Fit {
     /// All minima, the best one first.
     pub minima: Vec<Minimum>,
     /// The intervals of all free numbers.
-    pub intervals: Vec<Interval>,
+    pub intervals: Vec<ConfidenceInterval>,
     /// The best fit with Mindlin's stiffness of the materials.
     pub mindlin: Option<Mindlin>,
     /// What is left of each datum at the best minimum.
     pub residuals: Vec<Residual>,
     /// The best fit at all angles. `None` where nothing was measured at an angle, and where only a
     /// [`Survey`] was made.
-    pub course: Option<Course>,
+    pub course: Option<FittedCourse>,
 }
 
 /// A minimum of the misfit.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Minimum {
     /// Where it is.
-    #[cfg_attr(feature = "serde", serde(flatten))]
+    #[serde(flatten)]
     pub values: Values,
     /// The tangential stiffness: k_t in kg/s² where it is constant, K in kg/(s² √m) where it is
     /// Mindlin's. `None` in scaled units.
@@ -122,8 +120,7 @@ pub struct Minimum {
 }
 
 /// The root mean square of the residuals of one quantity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct RootMeanSquare {
     /// The quantity.
     pub quantity: Measured,
@@ -134,11 +131,10 @@ pub struct RootMeanSquare {
 }
 
 /// A datum and what the model says of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Residual {
     /// The datum.
-    #[cfg_attr(feature = "serde", serde(flatten))]
+    #[serde(flatten)]
     pub datum: Datum,
     /// What the model says.
     pub predicted: f64,
@@ -147,8 +143,7 @@ pub struct Residual {
 }
 
 /// The best fit with the tangential stiffness that Mindlin's theory gives the materials.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Mindlin {
     /// The best fit.
     pub best: Minimum,
@@ -165,18 +160,18 @@ pub struct Mindlin {
 /// ```
 /// use stickslip_model::Law;
 /// use stickslip_plane::{Range, progress};
-/// use stickslip_practice::fit::{self, Bodies, Datum, Measured, Settings, Values};
+/// use stickslip_practice::fit::{self, FittedBodies, Datum, Measured, FitSettings, Values};
 ///
 /// // What would be measured of homogeneous spheres with κ = 5 and μ = 0.1.
 /// let values = Values { kappa: 5.0, mu: 0.1, tangential_damping: 0.0, damping: 0.0 };
-/// let bodies = Bodies::scaled(Law::PAPER, 2.0 / 7.0, &values)?;
+/// let bodies = FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &values)?;
 /// let angles = [5.0_f64, 10.0, 20.0, 30.0, 45.0, 60.0].map(f64::to_radians);
 /// let predicted = fit::predicted(&bodies, 1.0, Measured::CentreRestitution, &angles)?;
 /// let data = angles.iter().zip(&predicted).map(|(angle, e_t)| {
 ///     Datum::at_angle(*angle, 1.0, Measured::CentreRestitution, *e_t, Some(0.01))
 /// });
 ///
-/// let mut settings = Settings::new(bodies, data.collect());
+/// let mut settings = FitSettings::new(bodies, data.collect());
 /// settings.ranges.kappa = Range { low: 1.0, high: 20.0 };
 /// let found = fit::run(&settings, progress::SILENT)?;
 /// let best = &found.minima[0].values;
@@ -187,7 +182,7 @@ pub struct Mindlin {
 ///
 /// # Errors
 /// [`FitError`]: the settings are out of range, or an impact cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Fit, FitError> {
+pub fn run(settings: &FitSettings, progress: Report<'_>) -> Result<Fit, FitError> {
     let survey = Survey::new(settings, progress)?;
     survey.with_course(survey.fit()?)
 }
@@ -198,7 +193,7 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Fit, FitError> {
 /// # Errors
 /// [`FitError`]: an impact cannot be computed.
 pub fn predicted(
-    bodies: &Bodies,
+    bodies: &FittedBodies,
     speed_m_per_s: f64,
     quantity: Measured,
     angles_rad: &[f64],
@@ -214,7 +209,7 @@ impl Fit {
     ///
     /// # Errors
     /// [`FitError`]: they have no impact at the speed of the fit.
-    pub fn best_pair(&self, bodies: &Bodies) -> Result<Option<BodyPair>, FitError> {
+    pub fn best_pair(&self, bodies: &FittedBodies) -> Result<Option<BodyPair>, FitError> {
         let (Some(speed), Some(best)) = (self.speed_m_per_s, self.minima.first()) else {
             return Ok(None);
         };

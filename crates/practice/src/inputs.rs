@@ -40,7 +40,6 @@ impl Code {
         [Self::Lammps, Self::Liggghts, Self::Yade, Self::Mfix, Self::Mercury];
 
     /// The name: `lammps`, `liggghts`, `yade`, `mfix` or `mercury`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Lammps => "lammps",
@@ -52,7 +51,6 @@ impl Code {
     }
 
     /// The code with this name.
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|code| code.name() == name)
     }

@@ -6,7 +6,7 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::progress::Report;
 use stickslip_plane::sealed;
-use stickslip_plane::stack::{StackDocument, stack as stacked};
+use stickslip_plane::stack::stack as stacked;
 
 use crate::background::watched;
 use crate::failure::{bad_input, failed, of_atlas};
@@ -28,6 +28,6 @@ pub fn stack(
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
     let work = move |report: Report<'_>| stacked(frame, &dampings, tolerance, report);
     let made = watched(py, threads, progress.as_ref(), work)?.map_err(|error| of_atlas(&error))?;
-    let json = sealed::to_string(&StackDocument::from(&made)).map_err(failed)?;
+    let json = sealed::to_string(&made.document()).map_err(failed)?;
     Ok((json, pictures::stack::draw(&made).document(), made.objection()))
 }

@@ -32,7 +32,7 @@ mod subject;
 
 pub use report::{SCHEMA, TITLE};
 pub use spring::Spring;
-pub use statement::{Evidence, Finding, Statement, Verdict};
+pub use statement::{Evidence, Statement, StatementFinding, Verdict};
 
 /// The statements with what was found.
 #[derive(Debug)]
@@ -44,9 +44,6 @@ pub struct Audit {
 }
 
 /// Tests the statements `numbers`, from 1 to [`COUNT`], on the threads of the current pool.
-///
-/// # Errors
-/// [`ReproductionError`]: a number is not from 1 to [`COUNT`], or a collision cannot be computed.
 pub fn run(
     spring: Spring,
     numbers: &[u8],
@@ -75,7 +72,7 @@ fn test(
 const COUNT: u8 = 25;
 
 /// A statement in other words, its place in the paper, and its test.
-struct Entry(&'static str, &'static str, fn(&Subject) -> Result<Finding, Stop>);
+struct Entry(&'static str, &'static str, fn(&Subject) -> Result<StatementFinding, Stop>);
 
 #[rustfmt::skip]
 const ENTRIES: [Entry; COUNT as usize] = [
@@ -111,9 +108,6 @@ const ENTRIES: [Entry; COUNT as usize] = [
 ];
 
 /// Tests statement `number`, from 1 to [`COUNT`].
-///
-/// # Errors
-/// There is no such statement, or a collision cannot be computed.
 fn test(number: u8, subject: &Subject) -> Result<Statement, ReproductionError> {
     let entry = usize::from(number).checked_sub(1).and_then(|index| ENTRIES.get(index));
     let Entry(paraphrase, place, test) =
@@ -177,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_collision_that_fails_in_a_single_statement_keeps_its_parameters() {
-        let failure = || -> Result<Finding, Stop> {
+        let failure = || -> Result<StatementFinding, Stop> {
             Spring::Reset.collide(TOO_STIFF, 1.0, 0.0)?;
             unreachable!("the collision is out of range")
         };

@@ -19,7 +19,7 @@ mod tables;
 
 pub use crate::limits::MOST_CELLS;
 pub use law::{Kinds, LawOnPlane};
-pub use settings::{Named, Settings, distinct};
+pub use settings::{ContactLawSettings, Named, distinct};
 pub use tables::LAWS;
 
 /// The name of the layout of the JSON, with its version.
@@ -31,7 +31,7 @@ pub const TITLE: &str = "Contact laws of particle codes";
 #[derive(Clone, Debug)]
 pub struct ContactLaws {
     /// The laws and the window.
-    pub settings: Settings,
+    pub settings: ContactLawSettings,
     /// What each law does, in the order of the settings.
     pub laws: Vec<LawOnPlane>,
 }
@@ -40,9 +40,9 @@ pub struct ContactLaws {
 ///
 /// ```
 /// use stickslip_plane::progress;
-/// use stickslip_studies::contact_laws::{self, Settings};
+/// use stickslip_studies::contact_laws::{self, ContactLawSettings};
 ///
-/// let settings = Settings { cells: 4, ..Settings::default() };
+/// let settings = ContactLawSettings { cells: 4, ..ContactLawSettings::default() };
 /// let computed = contact_laws::run(&settings, progress::SILENT)?;
 /// assert_eq!(computed.study().tables[0].rows.len(), settings.laws.len());
 /// # Ok::<(), stickslip_studies::StudyError>(())
@@ -50,7 +50,7 @@ pub struct ContactLaws {
 ///
 /// # Errors
 /// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<ContactLaws, StudyError> {
+pub fn run(settings: &ContactLawSettings, progress: Report<'_>) -> Result<ContactLaws, StudyError> {
     settings.validate()?;
     progress(Progress::Begin { steps: settings.laws.len() });
     let laws = settings.laws.par_iter().map(|named| {
@@ -64,7 +64,6 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<ContactLaws, Stu
 
 impl ContactLaws {
     /// The study: findings, numbers and a table.
-    #[must_use]
     pub fn study(&self) -> Study {
         let json = json!({
             "schema": SCHEMA,

@@ -49,7 +49,10 @@ pub struct Convergence {
 /// # Errors
 /// [`StudyError`]: there is no collision, one is too stiff or has no reference to compare with, or
 /// `collide` cannot compute it.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Convergence, StudyError> {
+pub fn run(
+    settings: &ConvergenceSettings,
+    progress: Report<'_>,
+) -> Result<Convergence, StudyError> {
     settings.validate()?;
     let references = settings.contacts.iter().map(|contact| {
         reference(*contact).map_err(|source| CollisionFailure::new(contact, source))
@@ -85,7 +88,6 @@ fn measure_all(references: &[Collision], progress: Report<'_>) -> Vec<ErrorSerie
 
 impl Convergence {
     /// The study: findings, numbers and tables.
-    #[must_use]
     pub fn study(&self) -> Study {
         let json = json!({
             "schema": SCHEMA,
@@ -119,12 +121,12 @@ impl Convergence {
 
 /// The collisions of a study.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct ConvergenceSettings {
     /// The collisions whose errors are measured; κ is at most [`MOST_STIFFNESS`].
     pub contacts: Vec<Contact>,
 }
 
-impl Settings {
+impl ConvergenceSettings {
     /// The usual study: collisions with two to eight switches without damping, κ = 18 and 63, ψ =
     /// 0.1, 0.2, … 1.9.
     ///

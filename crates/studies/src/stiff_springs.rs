@@ -23,7 +23,7 @@ mod maxima;
 mod profile;
 mod tables;
 
-pub use fit::{Estimate, Fits};
+pub use fit::{Fits, FittedConstant};
 pub use limit::Excess;
 pub use maxima::{LargestRestitution, LargestVelocity, MOST_RESOLVED, RangeStart};
 pub use profile::{ComparedCollision, CurvePoint, OtherStart, Profile};
@@ -63,7 +63,10 @@ pub struct StiffSprings {
 ///
 /// # Errors
 /// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<StiffSprings, StudyError> {
+pub fn run(
+    settings: &StiffSpringSettings,
+    progress: Report<'_>,
+) -> Result<StiffSprings, StudyError> {
     settings.validate()?;
     let kappas = stiffnesses(settings.kappa);
     progress(Progress::Begin {
@@ -116,7 +119,6 @@ fn at_each<V: Copy + Sync, T: Send>(
 
 impl StiffSprings {
     /// The study: findings, numbers and tables.
-    #[must_use]
     pub fn study(&self) -> Study {
         let tables = self.tables();
         let mut json = json!({
@@ -154,21 +156,21 @@ impl StiffSprings {
 
 /// The stiffnesses and impact ratios of a study.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct StiffSpringSettings {
     /// Interval of the scaled stiffness κ, within 3 to 10¹⁰.
     pub kappa: Range,
     /// Reduced impact ratios ψ, each above 0 and below 2; one to four.
     pub psi: Vec<f64>,
 }
 
-impl Default for Settings {
+impl Default for StiffSpringSettings {
     /// κ from 10 to 10⁸, ψ = 0.3, 1 and 1.7.
     fn default() -> Self {
         Self { kappa: Range { low: 10.0, high: 1e8 }, psi: vec![0.3, 1.0, 1.7] }
     }
 }
 
-impl Settings {
+impl StiffSpringSettings {
     /// Checks all settings.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, Frame};
 use stickslip_plane::progress::InParallel;
-use stickslip_plane::stack::{StackDocument, damped, stack};
+use stickslip_plane::stack::{damped, stack};
 use stickslip_tracer::{Stack, StackOptions, Watch};
 
 use crate::error::Failure;
@@ -116,7 +116,7 @@ fn collisions(arguments: &StackArguments) -> Result<(), Failure> {
         AtlasError::Layer { source, .. } => (*source).into(),
         error => error.into(),
     })?;
-    let mut stored = vec![write_json(file, &StackDocument::from(&made))?];
+    let mut stored = vec![write_json(file, &made.document())?];
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::stack::draw(&made)))?);
     }

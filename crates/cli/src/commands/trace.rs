@@ -10,7 +10,7 @@ use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Atlas, Document, Frame, geojson};
+use stickslip_plane::atlas::{self, Atlas, AtlasDocument, Frame, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{Surveyor, Watch};
@@ -120,13 +120,13 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
         (verified, gained)
     })?;
     let (verified, gained) = (verified?, gained.transpose()?);
-    let mut stored = vec![write_json(file, &Document::new(&verified))?];
+    let mut stored = vec![write_json(file, &AtlasDocument::new(&verified))?];
     if let Some(map) = map {
         let line = json::line(&geojson(&verified)).map_err(|error| map.failure(error))?;
         stored.push(map.finish(&line)?);
     }
     if let (Some(file), Some(gained)) = (gaining_file, &gained) {
-        stored.push(write_json(file, &gaining::Document::from(gained))?);
+        stored.push(write_json(file, &gained.document())?);
     }
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::atlas::draw(&verified)))?);

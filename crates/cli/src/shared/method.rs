@@ -42,9 +42,6 @@ pub enum Method {
 
 impl MethodArguments {
     /// The engine that the options choose for collisions with a law and a tangential damping.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: a tolerance would have no effect.
     pub fn engine(&self, law: (Law, f64)) -> Result<Engine, Failure> {
         let Self { method, rtol, atol } = *self;
         let method = method.unwrap_or(Method::Auto).to_possible_value();

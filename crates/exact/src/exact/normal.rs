@@ -15,7 +15,6 @@ use stickslip_contact::numerics::root::{Jet, bracketed};
 
 use super::moment::{At, Half, Moment, Motion, Spring};
 use super::slip::SlipPhase;
-use crate::exact::moment::{At, Half, Moment};
 
 pub mod undamped;
 pub mod viscoelastic;

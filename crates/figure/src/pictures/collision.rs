@@ -29,7 +29,6 @@ pub const FORCE: &str = "force in units of m β^{2/5} g_n^{6/5}";
 pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
 
 /// Draws `collision`, whose course is `history`.
-#[must_use]
 pub fn draw(collision: &Collision, history: &History) -> Svg {
     let [force, time] = axes(&collision.contact);
     let course = Course::new(collision, history, FORCES.width);
@@ -50,7 +49,6 @@ pub fn frames(collision: &Collision, history: &History) -> impl Iterator<Item = 
 }
 
 /// Draws an impact that is not central, whose course is `history`, in SI units.
-#[must_use]
 pub fn draw_impact(report: &ImpactReport, history: &History) -> Svg {
     let Encounter { impact, .. } = &report.encounter;
     let units = Units {

@@ -31,7 +31,6 @@ pub enum Parameter {
 
 impl Parameter {
     /// The name of the column. The name of the option is the same after `--`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Kappa => "kappa",
@@ -46,17 +45,11 @@ impl Parameter {
     }
 
     /// The value in `text`.
-    ///
-    /// # Errors
-    /// What is wrong and what is expected.
     pub fn parse(self, text: &str) -> Result<f64, String> {
         checked(text, &self.expected(), |value| self.check(value).is_ok())
     }
 
     /// `value`, if it is in the parameter's range. The model decides on the ranges that it knows.
-    ///
-    /// # Errors
-    /// What is expected.
     pub fn check(self, value: f64) -> Result<f64, Cow<'static, str>> {
         let contact = match self {
             Self::Kappa => Contact::new(value, 1.0, 0.0),
@@ -86,9 +79,6 @@ impl Parameter {
 }
 
 /// The value of a quantity in SI units in `text`.
-///
-/// # Errors
-/// What is wrong and what is expected.
 pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, String> {
     checked(text, quantity.expected, |value| quantity.check(value).is_ok())
 }

@@ -6,9 +6,6 @@ use crate::input::number;
 use crate::input::parameter::Parameter;
 
 /// Reads an interval `LO:HI` of `parameter`, both ends of which are in its range.
-///
-/// # Errors
-/// What is wrong and what is expected.
 pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
     let Range { low, high } = parse(text)?;
     match (parameter.check(low), parameter.check(high)) {
@@ -18,9 +15,6 @@ pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
 }
 
 /// Reads an interval `LO:HI` above 0.
-///
-/// # Errors
-/// What is wrong and what is expected.
 pub fn parse_above_0(text: &str) -> Result<Range, String> {
     let range = parse(text)?;
     if range.low > 0.0 { Ok(range) } else { Err(ZERO.to_owned()) }
@@ -38,7 +32,6 @@ pub enum OneOrRange {
 impl OneOrRange {
     /// The value, or `count` values of the interval in equal ratios, of which the first and the
     /// last are its ends.
-    #[must_use]
     pub fn values(self, count: usize) -> Vec<f64> {
         match self {
             Self::One(value) => vec![value],
@@ -57,9 +50,6 @@ impl OneOrRange {
 }
 
 /// Reads a value of `parameter`, or an interval `LO:HI` as [`parse_for`].
-///
-/// # Errors
-/// What is wrong and what is expected.
 pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange, String> {
     if text.contains(':') {
         return parse_for(parameter, text).map(OneOrRange::Range);
@@ -69,9 +59,6 @@ pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange
 }
 
 /// Reads an interval `LO:HI`, which may begin at 0.
-///
-/// # Errors
-/// What is wrong and what is expected.
 pub fn parse(text: &str) -> Result<Range, String> {
     let (low, high) = text.split_once(':').ok_or(format!("not a range; {EXPECTED}"))?;
     let end = |name, text| {
@@ -106,9 +93,6 @@ impl Size {
     pub const MOST: usize = 10_usize.saturating_pow(10);
 
     /// Reads `WxH`.
-    ///
-    /// # Errors
-    /// What is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let expected = format!(
             "expected WxH, two whole numbers from 1 whose product is at most {}, \

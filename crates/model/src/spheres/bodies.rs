@@ -17,7 +17,6 @@ pub struct Material {
 
 impl Material {
     /// The elastic constants, on which a contact depends.
-    #[must_use]
     pub fn elasticity(&self) -> Elasticity {
         Elasticity { young_modulus_pa: self.young_modulus_pa, poisson_ratio: self.poisson_ratio }
     }
@@ -69,7 +68,6 @@ pub struct Sphere {
 
 impl Sphere {
     /// A homogeneous sphere.
-    #[must_use]
     pub fn homogeneous(radius_m: f64, material: &Material) -> Self {
         let mass_kg = Self::homogeneous_mass(radius_m, material.density_kg_per_m3);
         Self {
@@ -81,13 +79,11 @@ impl Sphere {
     }
 
     /// Mass (4/3)πR³ density in kg of a homogeneous sphere.
-    #[must_use]
     pub fn homogeneous_mass(radius_m: f64, density_kg_per_m3: f64) -> f64 {
         4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3) * density_kg_per_m3
     }
 
     /// Moment of inertia (2/5) m R² in kg m² of a homogeneous sphere.
-    #[must_use]
     pub fn homogeneous_moment(radius_m: f64, mass_kg: f64) -> f64 {
         0.4 * mass_kg * radius_m * radius_m
     }
@@ -183,13 +179,11 @@ impl Reduction {
     pub const HOMOGENEOUS: Self = Self { mu: 0.4, alpha: 2.0 / 7.0 };
 
     /// ψ at the impact ratio g_t/g_n.
-    #[must_use]
     pub fn psi(&self, ratio: f64) -> f64 {
         ratio * self.alpha / self.mu
     }
 
     /// The impact ratio g_t/g_n at ψ.
-    #[must_use]
     pub fn ratio(&self, psi: f64) -> f64 {
         psi * self.mu / self.alpha
     }

@@ -210,13 +210,11 @@ impl Encounter {
 
     /// The parameters of the scaled collision that decides the outcome. For a central impact, the
     /// collision has the same normal motion.
-    #[must_use]
     pub fn contact(&self) -> Contact {
         self.impact.contact
     }
 
     /// Whether the impact is central: the surfaces have no tangential velocity.
-    #[must_use]
     pub fn is_central(&self) -> bool {
         self.tangent.is_none()
     }

@@ -64,7 +64,6 @@ impl Oblique {
 
 impl Atlas {
     /// ψ of all boundaries at `kappa`, in ascending order. They are as accurate as the boundaries.
-    #[must_use]
     pub fn boundaries_at(&self, kappa: f64) -> Vec<f64> {
         let x = self.plane.chart().abscissa(kappa);
         let curves = self.regions.curves().iter().flat_map(|curve| curve.nodes.windows(2));

@@ -67,7 +67,6 @@ pub enum AtlasError {
 
 impl AtlasError {
     /// The error of a trace of `plane`.
-    #[must_use]
     pub fn of(plane: &CollisionPlane, error: TraceError<CollisionError>) -> Self {
         match error {
             TraceError::Run { point, source } => {

@@ -34,19 +34,16 @@ impl Atlas {
     ///
     /// # Panics
     /// If there is no region with this index.
-    #[must_use]
     pub fn itinerary(&self, region: usize) -> &str {
         self.regions.regions()[region].label.as_deref().unwrap_or_default()
     }
 
     /// The window, and what all its collisions have in common.
-    #[must_use]
     pub fn frame(&self) -> Frame {
         Frame { ratio: self.ratio, ..Frame::of(&self.plane) }
     }
 
     /// What speaks against the atlas; `None` if nothing does.
-    #[must_use]
     pub fn objection(&self) -> Option<String> {
         self.report.objection()
     }
@@ -79,7 +76,6 @@ impl Names<String, BoundaryKind> for CollisionPlane {
 /// ```
 /// assert_eq!(stickslip_plane::atlas::switch_count("+o-"), 2);
 /// ```
-#[must_use]
 pub fn switch_count(itinerary: &str) -> usize {
     itinerary.len().saturating_sub(1)
 }
@@ -87,7 +83,6 @@ pub fn switch_count(itinerary: &str) -> usize {
 impl Atlas {
     /// The points (κ, ψ) of each boundary, in the order of the boundaries. They are so close that
     /// straight lines between them look smooth in a picture of the window.
-    #[must_use]
     pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {
         let extent = self.regions.window().extent();
         let curves = self.regions.curves().iter();

@@ -8,7 +8,7 @@ use super::data::{Datum, Measured};
 
 /// A named column, in which values may be missing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct MeasuredColumn {
     /// The name of a quantity with its unit, perhaps with `_error` at its end.
     pub name: String,
     /// A value for each row.
@@ -72,10 +72,10 @@ impl Meaning {
 /// them.
 ///
 /// ```
-/// use stickslip_practice::fit::{Column, Measured, data};
+/// use stickslip_practice::fit::{MeasuredColumn, Measured, data};
 ///
 /// let column = |name: &str, values: &[Option<f64>]| {
-///     Column { name: name.to_owned(), values: values.to_vec() }
+///     MeasuredColumn { name: name.to_owned(), values: values.to_vec() }
 /// };
 /// let columns = [
 ///     column("centre_impact_angle_deg", &[Some(30.0), Some(60.0)]),
@@ -93,12 +93,12 @@ impl Meaning {
 /// [`InvalidValue`]: columns are missing, unknown or contradict each other, a row has no impact,
 /// or an angle is out of range. Values of other quantities are checked by the fit.
 pub fn data(
-    columns: &[Column],
+    columns: &[MeasuredColumn],
     rows: &[usize],
     speed_m_per_s: Option<f64>,
     scaled: bool,
 ) -> Result<Vec<Datum>, InvalidValue> {
-    let mut known: Vec<(&Column, Meaning)> = Vec::new();
+    let mut known: Vec<(&MeasuredColumn, Meaning)> = Vec::new();
     for column in columns {
         let Some(meaning) = Meaning::find(&column.name) else {
             let quantities = Meaning::NAMES.map(|(name, _)| name).join(", ");
@@ -127,7 +127,7 @@ pub fn data(
     for (index, &row) in rows.iter().enumerate() {
         for (found, meaning) in &known {
             let Meaning::Measured(quantity, unit) = *meaning else { continue };
-            let at = |column: &Column| column.values.get(index).copied().flatten();
+            let at = |column: &MeasuredColumn| column.values.get(index).copied().flatten();
             let Some(value) = at(found) else { continue };
             if quantity == Measured::ReboundAngle && !quantity.allows(value * unit) {
                 let expected = if unit == 1.0 {
@@ -154,13 +154,21 @@ pub fn data(
 
 /// Where the impact of a row is.
 enum Impacts<'a> {
-    Angle { angle: &'a Column, unit: f64, speed: Option<&'a Column>, all: Option<f64> },
-    Velocities { normal: &'a Column, tangential: &'a Column },
+    Angle {
+        angle: &'a MeasuredColumn,
+        unit: f64,
+        speed: Option<&'a MeasuredColumn>,
+        all: Option<f64>,
+    },
+    Velocities {
+        normal: &'a MeasuredColumn,
+        tangential: &'a MeasuredColumn,
+    },
 }
 
 impl<'a> Impacts<'a> {
     fn new(
-        known: &[(&'a Column, Meaning)],
+        known: &[(&'a MeasuredColumn, Meaning)],
         all: Option<f64>,
         scaled: bool,
     ) -> Result<Self, InvalidValue> {
@@ -201,7 +209,7 @@ impl<'a> Impacts<'a> {
 
     /// The normal and the tangential velocity of a row.
     fn at(&self, index: usize, row: usize) -> Result<(f64, f64), InvalidValue> {
-        let number = |column: &Column| {
+        let number = |column: &MeasuredColumn| {
             let value = column.values.get(index).copied().flatten();
             let missing = || InvalidValue::phrase(in_row(row, column), "is missing", "a number");
             value.ok_or_else(missing)
@@ -230,6 +238,6 @@ impl<'a> Impacts<'a> {
     }
 }
 
-fn in_row(row: usize, column: &Column) -> String {
+fn in_row(row: usize, column: &MeasuredColumn) -> String {
     format!("row {row}: {}", column.name)
 }

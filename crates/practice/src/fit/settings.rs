@@ -4,15 +4,15 @@ use stickslip_model::{Damping, InvalidValue, Law};
 use stickslip_plane::Range;
 
 use super::FitError;
-use super::bodies::Bodies;
+use super::bodies::FittedBodies;
 use super::data::{Datum, Measured};
 use super::free::{Free, Ranges};
 
 /// The data, and what is fitted to them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct FitSettings {
     /// The bodies and their contact law. What is not fitted has their values.
-    pub bodies: Bodies,
+    pub bodies: FittedBodies,
     /// The data, at most [`Self::MOST_DATA`].
     pub data: Vec<Datum>,
     /// What is fitted: [`Free::Damping`], or up to two others, or both.
@@ -28,15 +28,14 @@ pub struct Settings {
     pub relative_errors: bool,
 }
 
-impl Settings {
+impl FitSettings {
     /// Most data.
     pub const MOST_DATA: usize = 10_000;
     /// Largest κ.
     pub const LARGEST_KAPPA: f64 = 1e4;
 
     /// A fit of κ and μ to `data`, with intervals at 0.95.
-    #[must_use]
-    pub fn new(bodies: Bodies, data: Vec<Datum>) -> Self {
+    pub fn new(bodies: FittedBodies, data: Vec<Datum>) -> Self {
         let mut ranges = Ranges::default();
         // Beyond it contacts never end.
         ranges.damping.high = ranges.damping.high.min(0.99 * bodies.pair.law.endless_from());

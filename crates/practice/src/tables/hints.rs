@@ -7,7 +7,7 @@ use stickslip_plane::Range;
 use super::TableError;
 use super::assembly::index;
 use super::chebyshev::value;
-use super::settings::Settings;
+use super::settings::TableSettings;
 use super::slab::Graph;
 use super::table::Arrays;
 
@@ -31,7 +31,6 @@ impl Arrays {
 
     /// Sets keys and hints as [`Self::set_hints`] does, but keeps the length of the keys unless
     /// they are too many: old tables have half as many keys of y.
-    #[cfg(feature = "serde")]
     pub(super) fn restore_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
         let shift = self.strip_keys.shift;
         self.set_keys([x, y]);
@@ -56,7 +55,7 @@ impl Arrays {
                 while below < bounds.len() && bounds[below] <= least {
                     below += 1;
                 }
-                let many = TableError::Many { most: Settings::MOST_STRIPS };
+                let many = TableError::Many { most: TableSettings::MOST_STRIPS };
                 self.strip_hints.push(u16::try_from(below).map_err(|_| many)?);
             }
         }
@@ -80,9 +79,8 @@ fn upper_bound(graph: &Graph) -> f64 {
 }
 
 /// The first bits of numbers above 0, which give their size roughly.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Keys {
     /// How many bits are left out.
     pub shift: u32,

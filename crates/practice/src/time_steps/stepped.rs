@@ -6,7 +6,6 @@ use stickslip_model::{
 
 /// The duration of a contact with the normal force of `law` and without damping, in scaled units:
 /// π for a linear force, 3.218… for Hertz'.
-#[must_use]
 pub fn undamped_contact_time(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => std::f64::consts::PI,
@@ -15,8 +14,7 @@ pub fn undamped_contact_time(law: Law) -> f64 {
 }
 
 /// A collision as a particle code computes it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Stepped {
     /// Coefficient of normal restitution ε_n.
     pub eps_n: f64,
@@ -32,7 +30,6 @@ pub struct Stepped {
 
 impl Stepped {
     /// Whether the steps resolve both springs: [`Self::stiffness`] stays below 1.
-    #[must_use]
     pub fn is_stable(&self) -> bool {
         self.stiffness < 1.0
     }
@@ -55,7 +52,6 @@ const LONGEST: f64 = 10.0;
 /// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the
 /// contact has not ended after ten times `duration` (its duration without steps) or after 10⁹
 /// steps, or if numbers are no longer finite.
-#[must_use]
 pub fn step(
     contact: &Contact,
     dt: f64,
@@ -227,9 +223,10 @@ impl ForceRule {
 /// `cfnewvalues.f` with `INTG_EULER`; YADE 2021.01a `NewtonIntegrator.cpp` for the motion alone.
 /// Only LAMMPS was run and compared. Schemes of other kinds, such as MFiX' Adams–Bashforth, are not
 /// computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
 pub enum Scheme {
     /// The history advances by a whole step in the first step of a contact too, as in LAMMPS,
     /// MercuryDPM and MFiX 21.3.2. Bodies touch where the overlap at the end of a step is above 0,
@@ -247,7 +244,6 @@ impl Scheme {
     pub const ALL: [Self; 2] = [Self::Lammps, Self::Elapsed];
 
     /// The name of the scheme: `lammps` or `elapsed`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Lammps => "lammps",
@@ -256,7 +252,6 @@ impl Scheme {
     }
 
     /// The scheme with this [`Self::name`].
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }

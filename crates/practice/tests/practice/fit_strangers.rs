@@ -5,22 +5,22 @@ use std::f64::consts::FRAC_PI_2;
 use stickslip_model::Law;
 use stickslip_plane::{Range, progress::SILENT};
 use stickslip_practice::fit::{
-    self, Bodies, Datum, FitError, Free, Measured, Settings, Survey, Values,
+    self, Datum, FitError, FitSettings, FittedBodies, Free, Measured, Survey, Values,
 };
 
 use crate::oblique;
 
 const VALUES: Values = Values { kappa: 6.0, mu: 0.2, tangential_damping: 0.0, damping: 0.0 };
 
-fn bodies(law: Law) -> Bodies {
-    Bodies::scaled(law, 2.0 / 7.0, &VALUES).unwrap()
+fn bodies(law: Law) -> FittedBodies {
+    FittedBodies::scaled(law, 2.0 / 7.0, &VALUES).unwrap()
 }
 
 fn datum(angle_deg: f64, value: f64, error: Option<f64>) -> Datum {
     Datum::at_angle(angle_deg.to_radians(), 1.0, Measured::EpsT, value, error)
 }
 
-fn refused(settings: &Settings) -> FitError {
+fn refused(settings: &FitSettings) -> FitError {
     fit::run(settings, SILENT).expect_err("settings that are refused")
 }
 
@@ -29,15 +29,15 @@ fn names(error: &FitError, name: &str) -> bool {
     matches!(error, FitError::Value(invalid) if invalid.name.starts_with(name))
 }
 
-fn settings(data: Vec<Datum>) -> Settings {
-    let mut settings = Settings::new(bodies(Law::PAPER), data);
+fn settings(data: Vec<Datum>) -> FitSettings {
+    let mut settings = FitSettings::new(bodies(Law::PAPER), data);
     settings.ranges.kappa = Range { low: 1.0, high: 10.0 };
     settings
 }
 
 #[test]
 fn bad_data_are_refused() {
-    let message = |settings: &Settings| refused(settings).to_string();
+    let message = |settings: &FitSettings| refused(settings).to_string();
     assert_eq!(message(&settings(vec![])), "0 data; expected 1 to 10000");
     let one = settings(vec![datum(30.0, 0.1, Some(0.1))]);
     let few = "1 data of the tangential motion for 2 free numbers; expected at least as many data";
@@ -69,7 +69,7 @@ fn bad_data_are_refused() {
 #[test]
 fn bad_questions_are_refused() {
     let data = vec![datum(30.0, 0.1, None), datum(40.0, 0.1, None), datum(50.0, 0.1, None)];
-    let with = |change: &dyn Fn(&mut Settings)| {
+    let with = |change: &dyn Fn(&mut FitSettings)| {
         let mut settings = settings(data.clone());
         change(&mut settings);
         refused(&settings)
@@ -131,7 +131,7 @@ fn huge_errors_leave_everything_open() {
 #[test]
 fn sliding_alone_does_not_tell_the_stiffness() {
     let values = Values { mu: 0.02, ..VALUES };
-    let slippery = Bodies::scaled(Law::PAPER, 2.0 / 7.0, &values).unwrap();
+    let slippery = FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &values).unwrap();
     let angles = [50.0_f64, 60.0, 70.0].map(f64::to_radians);
     let predicted = fit::predicted(&slippery, 1.0, Measured::EpsT, &angles).unwrap();
     let data = [50.0, 60.0, 70.0].iter().zip(predicted);

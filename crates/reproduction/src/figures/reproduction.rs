@@ -29,15 +29,11 @@ pub struct Reproduction {
 impl Reproduction {
     /// A reproduction with maps of `cells` columns and rows, which tests the statements on a model
     /// of the spring.
-    #[must_use]
     pub fn new(cells: usize, spring: Spring) -> Self {
         Self { cells, spring, boundaries: OnceLock::new() }
     }
 
     /// The boundaries in the plane of Figure 4, in both readings, verified.
-    ///
-    /// # Errors
-    /// [`AtlasError`]: they cannot be traced.
     pub(super) fn boundaries(&self) -> Result<&Arc<Atlas>, AtlasError> {
         if let Some(verified) = self.boundaries.get() {
             return Ok(verified);
@@ -75,7 +71,6 @@ const PARTS: [Part; 10] = [
 
 impl Reproduction {
     /// All parts, in the order in which a reader wants them.
-    #[must_use]
     pub fn parts() -> &'static [Part] {
         &PARTS
     }
@@ -83,10 +78,6 @@ impl Reproduction {
 
 impl Part {
     /// Computes the part on the threads of the current pool.
-    ///
-    /// # Errors
-    /// [`ReproductionError`]: maps have no cells, a collision cannot be computed, boundaries cannot
-    /// be traced, or a picture cannot be drawn.
     pub fn run(&self, reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         if reproduction.cells == 0 {
             return Err(ReproductionError::NoCells);
@@ -97,7 +88,7 @@ impl Part {
 
 /// The study of convergence, without the times, which differ from run to run.
 pub fn convergence(_: &Reproduction) -> Result<Section, ReproductionError> {
-    let measured = convergence::run(&convergence::Settings::usual(0.0)?, SILENT)?;
+    let measured = convergence::run(&convergence::ConvergenceSettings::usual(0.0)?, SILENT)?;
     let mut study = measured.study();
     study.tables.retain(|table| table.name != convergence::TIMES);
     let section = Section::new(study, pictures::convergence::draw(&measured));
@@ -106,7 +97,7 @@ pub fn convergence(_: &Reproduction) -> Result<Section, ReproductionError> {
 
 /// The study of stiff springs.
 pub fn stiff_springs(_: &Reproduction) -> Result<Section, ReproductionError> {
-    let measured = stiff_springs::run(&stiff_springs::Settings::default(), SILENT)?;
+    let measured = stiff_springs::run(&stiff_springs::StiffSpringSettings::default(), SILENT)?;
     Ok(Section::new(measured.study(), pictures::stiff_springs::draw(&measured)))
 }
 

@@ -52,21 +52,18 @@ pub enum Content {
 }
 
 /// The main results of all `sections`, a sentence each: the opening of a page that shows them.
-#[must_use]
 pub fn headlines(sections: &[Section]) -> Vec<String> {
     sections.iter().flat_map(|section| &section.study.headlines).cloned().collect()
 }
 
 impl Section {
     /// A study with its pictures, and nothing else.
-    #[must_use]
     pub fn new(study: Study, pictures: Vec<Picture>) -> Self {
         let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());
         Self { study, pictures, shown, audit: None, files, objections }
     }
 
     /// The names of all files with data, and what they hold.
-    #[must_use]
     pub fn data(&self) -> Vec<(String, &str)> {
         let tables = self.study.tables.iter();
         let tables = tables.map(|table| (format!("{}.csv", table.name), table.title.as_str()));
@@ -75,7 +72,6 @@ impl Section {
     }
 
     /// The section with a map as `name`.npz, and with what speaks against the map.
-    #[must_use]
     pub(super) fn with_map(mut self, name: &str, title: String, sweep: &Arc<Sweep>) -> Self {
         let name = format!("{name}.npz");
         let mut count = FailureCount::default();
@@ -91,7 +87,6 @@ impl Section {
     }
 
     /// The section with an atlas as `name`, and with what speaks against the atlas.
-    #[must_use]
     pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
         if let Some(reason) = atlas.objection() {

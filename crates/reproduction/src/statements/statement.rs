@@ -19,12 +19,12 @@ pub struct Statement {
     /// The place of the statement in the paper.
     pub place: &'static str,
     /// What was found of it.
-    pub finding: Finding,
+    pub finding: StatementFinding,
 }
 
 /// What was found of a statement.
 #[derive(Debug)]
-pub struct Finding {
+pub struct StatementFinding {
     /// Whether the statement is true, by the rule that the explanation names.
     pub verdict: Verdict,
     /// The condition under which it holds, if there is one.
@@ -63,21 +63,18 @@ pub struct Evidence(Vec<(String, Cell)>);
 
 impl Statement {
     /// The command that tests this statement alone.
-    #[must_use]
     pub fn command(&self) -> String {
         format!("stickslip reproduce --statement {}", self.number)
     }
 }
 
-impl Finding {
+impl StatementFinding {
     /// A finding without a condition.
-    #[must_use]
     pub fn new(verdict: Verdict, evidence: Evidence, explanation: String) -> Self {
         Self { verdict, condition: None, evidence, explanation }
     }
 
     /// The finding that a statement holds under `condition`.
-    #[must_use]
     pub fn under(condition: String, evidence: Evidence, explanation: String) -> Self {
         let verdict = Verdict::HoldsWithACondition;
         Self { verdict, condition: Some(condition), evidence, explanation }
@@ -103,7 +100,6 @@ impl Finding {
 
 impl Verdict {
     /// The verdict on a statement that is either true or not.
-    #[must_use]
     pub fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::DoesNotHold }
     }
@@ -123,14 +119,13 @@ impl fmt::Display for Verdict {
 impl Stop {
     /// The finding of a test. If the test leaves the statement open, that is a finding too, with
     /// the verdict "cannot be decided".
-    ///
-    /// # Errors
-    /// [`ReproductionError`]: a collision cannot be computed.
-    pub fn into_finding(tested: Result<Finding, Self>) -> Result<Finding, ReproductionError> {
+    pub fn into_finding(
+        tested: Result<StatementFinding, Self>,
+    ) -> Result<StatementFinding, ReproductionError> {
         match tested {
             Ok(finding) => Ok(finding),
             Err(Self::Open(reason)) => {
-                Ok(Finding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
+                Ok(StatementFinding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
             }
             Err(Self::Failed(error)) => {
                 Err(Arc::try_unwrap(error).unwrap_or_else(ReproductionError::Shared))
@@ -147,21 +142,18 @@ impl<E: Into<ReproductionError>> From<E> for Stop {
 
 impl Evidence {
     /// The evidence with a further number.
-    #[must_use]
     pub fn number(mut self, name: impl Into<String>, value: f64) -> Self {
         self.0.push((name.into(), value.into()));
         self
     }
 
     /// The evidence with a further count.
-    #[must_use]
     pub fn count(mut self, name: impl Into<String>, value: usize) -> Self {
         self.0.push((name.into(), value.into()));
         self
     }
 
     /// The evidence with further words.
-    #[must_use]
     pub fn text(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
         self.0.push((name.into(), Cell::Text(value.into())));
         self
@@ -174,9 +166,6 @@ impl Evidence {
 }
 
 /// The results of `of` for all `inputs`, in their order, on the threads of the current pool.
-///
-/// # Errors
-/// The first error in that order, whatever the number of threads.
 pub fn each<T: Sync, U: Send>(
     inputs: &[T],
     of: impl Fn(&T) -> Result<U, ReproductionError> + Send + Sync,

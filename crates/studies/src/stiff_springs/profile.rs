@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use stickslip_model::exact;
 use stickslip_model::limits::inner;
 
-use super::Settings;
+use super::StiffSpringSettings;
 use super::limit::{self, contact};
 use crate::error::StudyError;
 
@@ -76,7 +76,7 @@ pub struct OtherStart {
 }
 
 impl Profile {
-    pub(super) fn measure(settings: &Settings) -> Result<Self, StudyError> {
+    pub(super) fn measure(settings: &StiffSpringSettings) -> Result<Self, StudyError> {
         // An onset at the end itself is not one; this close to the end F is 1e-13.
         let zero_phase = within(inner::phase(1e-30), 1.0);
         let nearest =

@@ -12,8 +12,7 @@ mod refined_exit;
 use crate::exact::moment::{At, Half, Moment, Motion, Spring};
 use crate::exact::normal::{ORDER, StickPhase, Trajectory};
 use crate::exact::slip::SlipPhase;
-use crest::crest;
-use meeting::meeting;
+use meeting::{crest, meeting};
 use refined_exit::refined_exit;
 use stickslip_contact::EnergyLedger;
 
