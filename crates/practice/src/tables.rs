@@ -28,8 +28,8 @@
 //! ```
 //!
 //! Start reading here; then, in this order: `settings`, `boundaries` and `chain` (boundaries as
-//! graphs over x, and where they turn back), `stretch` (coordinates in which roots are smooth), `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up),
-//! `verification`.
+//! graphs over x, and where they turn back), `stretch` (coordinates in which roots are smooth),
+//! `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up), `verification`.
 
 mod assembly;
 mod boundaries;

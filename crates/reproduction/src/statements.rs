@@ -4,12 +4,11 @@
 //! collision that cannot be computed is an error of the whole audit. A doubt about boundaries is
 //! not: it is the verdict "cannot be decided".
 //!
-//! Start reading here; then, in this order: `statement` (what is said of one, and which collisions are
-//! tried), [`Spring`] (two models of the spring; the second one is
+//! Start reading here; then, in this order: `statement` (what is said of one, and which collisions
+//! are tried), [`Spring`] (two models of the spring; the second one is
 //! [`unreset`](stickslip_studies::unreset)), `subject` (what all tests share), `line` (all
-//! boundaries at one stiffness), the tests by topic:
-//! `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and `report` (a study of
-//! them).
+//! boundaries at one stiffness), the tests by topic: `sliding`, `parameters`, `regimes`, `counts`,
+//! `course`, `bounds`; and `report` (a study of them).
 
 use rayon::prelude::*;
 use stickslip_plane::progress::{Progress, Report};

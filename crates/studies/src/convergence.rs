@@ -1,8 +1,8 @@
 //! The study of convergence: how errors fall with the step and the tolerance, and what they cost.
 //!
-//! Start reading here; then, in this order: [`plain_time`] (the law as the paper writes it), `measure` (the errors of one way to integrate), `series` (all ways,
-//! over steps and tolerances), `collisions` (the errors of `collide`), `findings` (what that says)
-//! and `tables`.
+//! Start reading here; then, in this order: [`plain_time`] (the law as the paper writes it),
+//! `measure` (the errors of one way to integrate), `series` (all ways, over steps and tolerances),
+//! `collisions` (the errors of `collide`), `findings` (what that says) and `tables`.
 
 use rayon::prelude::*;
 use serde_json::json;

@@ -1,7 +1,8 @@
 //! The study of the limit of stiff springs: how ε_t tends to 0, and why as κ^{−5/4}.
 //!
-//! Start reading here; then, in this order: [`limit`] (maxima of full collisions), `maxima` (what is measured of them), `profile` (the inner
-//! problem beside them), `fit` (exponent and constant), `findings` and `tables`.
+//! Start reading here; then, in this order: [`limit`] (maxima of full collisions), `maxima` (what
+//! is measured of them), `profile` (the inner problem beside them), `fit` (exponent and constant),
+//! `findings` and `tables`.
 
 use rayon::prelude::*;
 use serde_json::json;

@@ -109,8 +109,8 @@ impl Forces {
     /// ```
     ///
     /// # Errors
-    /// [`CollisionError::Parameter`] names the first constant that is missing, out of its range or without
-    /// meaning in the law.
+    /// [`CollisionError::Parameter`] names the first constant that is missing, out of its range or
+    /// without meaning in the law.
     pub fn new(law: Law, constants: &Constants) -> Result<Self, CollisionError> {
         let c = constants;
         let friction = quantity::FRICTION.check(c.friction)?;

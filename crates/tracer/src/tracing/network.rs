@@ -40,8 +40,8 @@ pub struct TraceStatistics {
     pub seeds: usize,
 }
 
-/// Something that a trace saw and could not explain; [`Names::unresolved`](crate::Names::unresolved) says
-/// it in a sentence.
+/// Something that a trace saw and could not explain;
+/// [`Names::unresolved`](crate::Names::unresolved) says it in a sentence.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

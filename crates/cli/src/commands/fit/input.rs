@@ -25,7 +25,7 @@ pub fn of(
         let reason = "--write needs constants in SI units; expected with --bodies";
         return Err(Failure::Usage(reason.to_owned()));
     };
-    let lines = inputs::lines(code, &pair).map_err(|none| Failure::Usage(none.to_string()))?;
+    let lines = inputs::lines(code, &pair).map_err(Failure::Usage)?;
     let impacts = ANGLES.map(|angle| {
         let (sine, cosine) = angle.to_radians().sin_cos();
         pair.impact(speed * cosine, speed * sine)

@@ -22,8 +22,8 @@ impl TryFrom<AtlasDocument> for Atlas {
     /// The impact ratios of the window are not kept.
     ///
     /// # Errors
-    /// [`AtlasDocumentError`]: the document contradicts itself, or its verification found something that
-    /// speaks against it.
+    /// [`AtlasDocumentError`]: the document contradicts itself, or its verification found something
+    /// that speaks against it.
     fn try_from(document: AtlasDocument) -> Result<Self, AtlasDocumentError> {
         if document.schema != SCHEMA {
             return Err(AtlasDocumentError::Schema { found: document.schema });
