@@ -9,12 +9,12 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
 use stickslip::model::{Collision, Contact, exact};
 use stickslip::plane::progress;
-use stickslip_practice::tables::{self, Settings};
+use stickslip_practice::tables::{self, TableSettings};
 
 const POINTS: usize = 100_000;
 
 fn look_up(criterion: &mut Criterion) {
-    let settings = Settings::default();
+    let settings = TableSettings::default();
     let table = tables::run(&settings, progress::SILENT).expect("a table");
     let mut random = Rng::with_seed(1);
     let [(k0, k1), (p0, p1)] = table.window.sides().map(|side| (side.low, side.high));

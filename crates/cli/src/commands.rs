@@ -69,9 +69,6 @@ pub enum Command {
 
 impl Command {
     /// Carries out the command.
-    ///
-    /// # Errors
-    /// What went wrong.
     pub fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Collide(arguments) => collide::run(arguments),

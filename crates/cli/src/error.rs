@@ -8,12 +8,11 @@ use stickslip_files::FileError;
 use stickslip_model::CollisionFailure;
 use stickslip_orbits::OrbitError;
 use stickslip_plane::atlas::AtlasError;
-use stickslip_plane::sweep::Failed;
+use stickslip_plane::sweep::FailedPoints;
 use stickslip_practice::fit::FitError;
 use stickslip_practice::tables::TableError;
 use stickslip_practice::time_steps::TimeStepsError;
 use stickslip_reproduction::ReproductionError;
-use stickslip_reproduction::figures::Objection;
 use stickslip_studies::StudyError;
 
 /// The reason why the program did not do what it was asked.
@@ -48,7 +47,7 @@ pub enum Failure {
     )]
     Points {
         /// The points without a result.
-        failed: Box<Failed>,
+        failed: Box<FailedPoints>,
         /// The number of all points.
         points: usize,
         /// How they are shown.
@@ -112,8 +111,8 @@ pub enum Failure {
     #[error(transparent)]
     Reproduction(#[from] ReproductionError),
     /// Something speaks against a result of `reproduce`.
-    #[error(transparent)]
-    Objection(Box<Objection>),
+    #[error("{0}")]
+    Objection(String),
     /// Something speaks against a result.
     #[error("{}: the {what} complete, but may be wrong: {reason}", path.display())]
     Doubtful {
@@ -174,13 +173,11 @@ impl Failure {
     }
 
     /// Whether the options are wrong.
-    #[must_use]
     pub fn is_usage(&self) -> bool {
         matches!(self, Self::Usage(_) | Self::File(FileError::Option(_)))
     }
 
     /// The exit code: 2 for bad usage or input, 1 for everything that fails later.
-    #[must_use]
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage(_)

@@ -9,6 +9,8 @@
 //! `reproduce`), `version` and `schema` (the program about itself), `error` (what can go wrong, and
 //! the exit codes). What is read from files and written to them is in the crate `stickslip-files`.
 
+#![allow(clippy::missing_errors_doc, reason = "errors of the program are sentences for its user")]
+
 mod commands;
 mod error;
 mod output;
@@ -30,14 +32,12 @@ pub use stickslip_files::FileError;
 use version::NAME;
 
 /// Carries out the command line of this process and reports what went wrong.
-#[must_use]
 pub fn main() -> ExitCode {
     ExitCode::from(program(std::env::args_os()))
 }
 
 /// Carries out a command line, which begins with the program's name, and reports what went wrong:
 /// the exit code.
-#[must_use]
 pub fn program(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
@@ -75,9 +75,6 @@ fn answer(reply: &clap::Error) -> u8 {
 }
 
 /// Carries out a command line, which begins with the program's name, and reports nothing.
-///
-/// # Errors
-/// What went wrong.
 pub fn run(
     arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> Result<(), Failure> {
@@ -87,7 +84,6 @@ pub fn run(
 }
 
 /// All commands with their options and help texts.
-#[must_use]
 pub fn commands() -> clap::Command {
     Arguments::command()
 }

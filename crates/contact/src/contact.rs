@@ -82,37 +82,31 @@ impl Contact {
     }
 
     /// Scaled stiffness κ of the tangential spring.
-    #[must_use]
     pub fn kappa(&self) -> f64 {
         self.kappa
     }
 
     /// Reduced impact ratio ψ = (g_t/g_n) α/μ.
-    #[must_use]
     pub fn psi(&self) -> f64 {
         self.psi
     }
 
     /// Scaled damping a of the normal force.
-    #[must_use]
     pub fn damping(&self) -> f64 {
         self.damping
     }
 
     /// Tangential damping b = (γ_t/γ_n)/α; 0 in the paper's law.
-    #[must_use]
     pub fn tangential_damping(&self) -> f64 {
         self.tangential_damping
     }
 
     /// The contact law.
-    #[must_use]
     pub fn law(&self) -> Law {
         self.law
     }
 
     /// Whether the paper's law holds: that is the law, or it differs in terms without effect.
-    #[must_use]
     pub fn obeys_paper(&self) -> bool {
         self.law.acts_as_paper(self.damping, self.tangential_damping)
     }

@@ -131,7 +131,6 @@ impl Stage {
 
 impl GeneralContact {
     /// The system of one contact.
-    #[must_use]
     pub fn new(contact: Contact) -> Self {
         let equations = Equations::new(&contact).off_the_border(contact.psi());
         let beginning = equations.beginning(contact.psi());
@@ -139,7 +138,6 @@ impl GeneralContact {
     }
 
     /// How the contact starts.
-    #[must_use]
     pub fn beginning(&self) -> Beginning {
         self.beginning
     }
@@ -158,7 +156,6 @@ impl GeneralContact {
 
     /// The same system with another start, for margins that are followed beyond the contacts that
     /// have them.
-    #[must_use]
     pub fn beginning_with(self, beginning: Beginning) -> Self {
         Self { beginning, ..self }
     }
@@ -166,25 +163,21 @@ impl GeneralContact {
     /// The numbers whose signs decide how the contact starts: one minus the ratio of tangential
     /// force and limit, if both grow alike, and the rate at which the spring exceeds the limit, if
     /// it may fall behind.
-    #[must_use]
     pub fn beginning_margins(&self) -> [Option<f64>; 2] {
         Equations::new(&self.contact).beginning_margins(self.contact.psi())
     }
 
     /// The same system, with an event at every reversal of the tangential velocity.
-    #[must_use]
     pub fn with_reversals(self) -> Self {
         Self { reversals: true, ..self }
     }
 
     /// The parameters of the contact.
-    #[must_use]
     pub fn contact(&self) -> Contact {
         self.contact
     }
 
     /// The mode in which the contact starts.
-    #[must_use]
     pub fn first(&self) -> Mode {
         let (regime, side, progress) = match self.beginning {
             Beginning::Stick if self.equations.starts_flat() => {
@@ -199,7 +192,6 @@ impl GeneralContact {
     }
 
     /// The state at the start of contact, or soon after it.
-    #[must_use]
     pub fn start(&self) -> State<STATE> {
         if self.beginning == Beginning::Stick && self.equations.starts_flat() {
             return self.equations.early(self.contact.psi(), self.equations.first_moment()).into();
@@ -208,7 +200,6 @@ impl GeneralContact {
     }
 
     /// The state at a time before that of [`Self::start`].
-    #[must_use]
     pub fn state_before_start(&self, time: f64) -> State<STATE> {
         if self.beginning == Beginning::Stick && self.equations.starts_flat() {
             return self.equations.early(self.contact.psi(), time.sqrt()).into();
@@ -217,19 +208,16 @@ impl GeneralContact {
     }
 
     /// Reduced tangential velocity w.
-    #[must_use]
     pub fn velocity(&self, y: &State<STATE>) -> f64 {
         self.equations.velocity(array(y))
     }
 
     /// Rate v of the overlap.
-    #[must_use]
     pub fn compression_rate(&self, y: &State<STATE>) -> f64 {
         self.equations.compression_rate(array(y))
     }
 
     /// Overlap x.
-    #[must_use]
     pub fn overlap(&self, y: &State<STATE>) -> f64 {
         // Where a contact ends, rounding may make u negative.
         y[U].max(0.0).powi(i32::from(self.equations.exponents.n))
@@ -237,7 +225,6 @@ impl GeneralContact {
 
     /// How long the overlap goes on after the force has ended in the state `y`: where the force is
     /// limited, nothing pushes any more.
-    #[must_use]
     pub fn flight(&self, y: &State<STATE>) -> f64 {
         match self.contact.law().end {
             End::Overlap => self.overlap(y) / -self.compression_rate(y),
@@ -246,20 +233,17 @@ impl GeneralContact {
     }
 
     /// How fast time grows with s.
-    #[must_use]
     pub fn clock_rate(&self, y: &State<STATE>) -> f64 {
         let n = i32::from(self.equations.exponents.n);
         f64::from(n) * y[U].powi(n - 1)
     }
 
     /// Scaled normal force F.
-    #[must_use]
     pub fn normal_force(&self, y: &State<STATE>) -> f64 {
         self.equations.normal_force(array(y))
     }
 
     /// The tangential force Q against the motion, in units of μ times the scaled normal force.
-    #[must_use]
     pub fn tangential_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
         match mode.regime {
             Regime::Slip => mode.side.sign() * mode.stage.sign() * self.normal_force(y),
@@ -268,7 +252,6 @@ impl GeneralContact {
     }
 
     /// The tangential force over κ: the elongation of a spring of this stiffness.
-    #[must_use]
     pub fn spring(&self, mode: Mode, y: &State<STATE>) -> f64 {
         self.tangential_force(mode, y) / self.contact.kappa()
     }
@@ -276,7 +259,6 @@ impl GeneralContact {
     /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
     /// at F = 0, its limit falls below every spring before, but the slip that follows may be
     /// shorter than rounding.
-    #[must_use]
     pub fn lacks_slip(&self, mode: Mode) -> bool {
         let vanishes = self.equations.exponents.damped && self.contact.law().end == End::Force;
         vanishes && mode.regime == Regime::Stick && !self.equations.is_frictionless()
@@ -284,7 +266,6 @@ impl GeneralContact {
 
     /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how
     /// long that slip lasts; `None` if none [is](Self::lacks_slip).
-    #[must_use]
     pub fn last_slip(&self, mode: Mode, y: &State<STATE>) -> Option<(usize, f64)> {
         self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))
     }
@@ -297,7 +278,6 @@ impl GeneralContact {
 
     /// The mode that follows `mode` where `guard` fires. Where attraction begins, slip goes on if
     /// it `slips`.
-    #[must_use]
     pub fn after(&self, mode: Mode, guard: usize, slips: bool) -> Mode {
         let (regime, side, progress) = match (guard, mode.regime) {
             (CREST, _) => {

@@ -150,7 +150,6 @@ pub enum SpringEnergy {
 
 impl SpringEnergy {
     /// Whether the spring creates energy.
-    #[must_use]
     pub fn creates(self) -> bool {
         matches!(self, Self::CreatedLoading | Self::CreatedUnloading)
     }
@@ -188,7 +187,6 @@ impl Law {
     };
 
     /// The equations in scaled units, in one line.
-    #[must_use]
     pub fn equations(&self) -> String {
         let elastic = match self.normal {
             Normal::Linear => "x",
@@ -238,7 +236,6 @@ impl Law {
     }
 
     /// Whether there is a spring.
-    #[must_use]
     pub fn remembers(&self) -> bool {
         self.history != HistoryOf::None
     }
@@ -255,7 +252,6 @@ impl Law {
     /// kept, its change is Q w + y² k'v/2, and where the force is kept, Q w − Q² k'v/(2k²). A
     /// history that is rescaled while the overlap falls adds Q² v/(2kx) to either, which is
     /// negative and, where the force is kept, twice what the falling stiffness creates.
-    #[must_use]
     pub fn spring_energy(&self) -> SpringEnergy {
         match (self.tangential, self.history, self.rescaled) {
             (_, HistoryOf::None, _) => SpringEnergy::Absent,
@@ -268,7 +264,6 @@ impl Law {
 
     /// Whether a contact with this law and these dampings obeys the paper's: terms that differ
     /// have no effect on it.
-    #[must_use]
     pub fn acts_as_paper(&self, damping: f64, tangential_damping: f64) -> bool {
         let elastic = self.normal == Normal::Hertz
             && self.tangential == Tangential::Constant
@@ -288,7 +283,6 @@ impl Law {
     /// of Hertz' force from v = −A x^{5/4}, 5A²/4 − aA + 1 = 0. For linear damping of Hertz' force
     /// the last trajectory to escape arrives along v = −a x. No other law has a trajectory that
     /// arrives.
-    #[must_use]
     pub fn endless_from(&self) -> f64 {
         if self.limit_damping || self.end == End::Force {
             return f64::INFINITY;

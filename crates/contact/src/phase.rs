@@ -26,7 +26,6 @@ pub enum Regime {
 
 impl Regime {
     /// `slip` or `stick`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Slip => "slip",
@@ -52,7 +51,6 @@ pub enum Side {
 
 impl Side {
     /// The sign s = ±1.
-    #[must_use]
     pub fn sign(self) -> f64 {
         match self {
             Self::Positive => 1.0,
@@ -61,7 +59,6 @@ impl Side {
     }
 
     /// The other side.
-    #[must_use]
     pub fn opposite(self) -> Self {
         match self {
             Self::Positive => Self::Negative,
@@ -97,7 +94,6 @@ impl Phase {
     ///
     /// The spring grows as t. Without damping its limit grows as t^{3/2}, and the first phase is
     /// slip. With damping the limit grows as a √t, and the first phase is stick.
-    #[must_use]
     pub fn first(contact: &Contact) -> Self {
         let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
         Self { regime, side: Side::Positive, progress: Progress::Touched }
@@ -105,7 +101,6 @@ impl Phase {
 
     /// The phase that follows: the other regime, and the other side if the spring has reached its
     /// limit there.
-    #[must_use]
     pub fn after(self, on_other_side: bool) -> Self {
         let regime = match self.regime {
             Regime::Slip => Regime::Stick,

@@ -35,7 +35,6 @@ pub struct Preset {
 const LIMITED: &str = "+limit_damping";
 
 /// The preset with a name of [`ALL`], to which `+limit_damping` may be added.
-#[must_use]
 pub fn find(name: &str) -> Option<Preset> {
     let (base, limited) = match name.strip_suffix(LIMITED) {
         Some(base) => (base, true),
@@ -54,7 +53,6 @@ pub fn find(name: &str) -> Option<Preset> {
 /// assert_eq!(presets::near("gran/hook/histroy")[0], "gran/hooke/history");
 /// assert_eq!(presets::near("nowhere"), [""; 0]);
 /// ```
-#[must_use]
 pub fn near(name: &str) -> Vec<&'static str> {
     let base = name.strip_suffix(LIMITED).unwrap_or(name).to_lowercase();
     let wanted = pairs(&base);

@@ -53,46 +53,39 @@ pub struct Regularized {
 
 impl Regularized {
     /// The system of one contact: that of the paper's law at its κ, ψ and a, whatever law it has.
-    #[must_use]
     pub fn new(contact: Contact) -> Self {
         let contact = contact.with_paper_law();
         Self { contact, equations: Equations::new(&contact) }
     }
 
     /// The parameters of the contact.
-    #[must_use]
     pub fn contact(&self) -> Contact {
         self.contact
     }
 
     /// The state at the start of contact.
-    #[must_use]
     pub fn start(&self) -> State<STATE> {
         self.equations.start(self.contact.psi()).into()
     }
 
     /// Reduced tangential velocity w.
     #[inline(always)]
-    #[must_use]
     pub fn velocity(&self, y: &State<STATE>) -> f64 {
         self.equations.velocity(array(y))
     }
 
     /// Rate v of the scaled compression.
     #[inline(always)]
-    #[must_use]
     pub fn compression_rate(&self, y: &State<STATE>) -> f64 {
         if self.is_damped() { self.equations.compression_rate::<true>(y[U], y[V]) } else { y[V] }
     }
 
     /// Scaled normal force F = x^{3/2} + a √x v.
-    #[must_use]
     pub fn normal_force(&self, y: &State<STATE>) -> f64 {
         self.force(y[U], y[V]).value
     }
 
     /// Reduced elongation y of the spring in a state of `phase`.
-    #[must_use]
     pub fn spring(&self, phase: Phase, y: &State<STATE>) -> f64 {
         let force = match phase.regime {
             Regime::Slip => phase.side.sign() * self.normal_force(y),

@@ -2,13 +2,12 @@
 
 use smallvec::SmallVec;
 
-mod energy;
-mod finite;
-
 use crate::contact::Contact;
 use crate::phase::{OTHER_SIDE, Phase, Regime, SAME_SIDE, Side};
+
+mod energy;
+
 pub use energy::EnergyLedger;
-pub use finite::NotFinite;
 
 /// The result of one collision in reduced variables, from any engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +62,6 @@ pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
 impl Collision {
     /// A collision that has not been computed yet: its coefficient, velocity and duration are NaN,
     /// it has no switches, and its energies are 0.
-    #[must_use]
     pub fn before(contact: Contact) -> Self {
         Self {
             contact,
@@ -90,13 +88,11 @@ impl Collision {
     }
 
     /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0); −1 is full reversal.
-    #[must_use]
     pub fn eps_t(&self) -> f64 {
         self.final_velocity / self.contact.psi()
     }
 
     /// One character for each phase: `+` and `-` for slip on side +1 and −1, `o` for stick.
-    #[must_use]
     pub fn itinerary(&self) -> String {
         let start = (self.start, self.start_side);
         let entered = self.switches.iter().map(|switch| (switch.to, switch.side));
@@ -113,7 +109,6 @@ impl Collision {
     /// The guards that fired, [`SAME_SIDE`](crate::regularized::SAME_SIDE) or
     /// [`OTHER_SIDE`](crate::regularized::OTHER_SIDE) for each switch, as the
     /// margins of the exact solution name them.
-    #[must_use]
     pub fn fired(&self) -> Vec<usize> {
         let mut side = self.start_side;
         let guard = |switch: &Switch| {
@@ -144,5 +139,26 @@ impl Collision {
             ]
         });
         NotFinite::among(results.into_iter().chain(switches))
+    }
+}
+
+/// A result is beyond the range of doubles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name} is not a finite number")]
+pub struct NotFinite {
+    /// The name of the result.
+    pub name: &'static str,
+}
+
+impl NotFinite {
+    /// Checks that all results, given with their names, are finite numbers.
+    ///
+    /// # Errors
+    /// [`NotFinite`] names the first that is not.
+    pub fn among(values: impl IntoIterator<Item = (&'static str, f64)>) -> Result<(), Self> {
+        match values.into_iter().find(|(_, value)| !value.is_finite()) {
+            Some((name, _)) => Err(Self { name }),
+            None => Ok(()),
+        }
     }
 }

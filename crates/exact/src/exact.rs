@@ -19,6 +19,17 @@
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). The statements
 //! on which the decisions rest are proved in docs/physics.md.
 
+use stickslip_contact::{Collision, Contact, EnergyLedger, Regime, Side, Switch};
+
+use error::{checked, too_many};
+use moment::{At, Moment, Motion};
+use normal::Trajectory;
+use phases::{Phase, Task, with_trajectory};
+use release::Release;
+use slide::Slide;
+use slip::SlipPhase;
+use swing::Swing;
+
 mod boundaries;
 mod cusp;
 mod distance;
@@ -35,26 +46,14 @@ mod release;
 mod slide;
 mod slip;
 mod swing;
-mod totals;
-
-use stickslip_contact::{Collision, Contact, Regime, Side, Switch};
 
 pub use crate::domain::MOST_STIFFNESS;
 pub use boundaries::{small_impact_boundary, top_boundary};
 pub use cusp::{cusps, swallowtail};
 pub use distance::distance;
 pub use error::ExactError;
-use error::{checked, too_many};
 pub use margin::{Margins, margin, margins, moved};
-use moment::{At, Moment};
-use normal::Trajectory;
 pub use normal::undamped::CONTACT_TIME;
-use phases::{Phase, Task, with_trajectory};
-use release::Release;
-use slide::Slide;
-use slip::SlipPhase;
-use swing::Swing;
-use totals::Totals;
 
 /// Most switches that [`collide`] lists for one collision; they take about 170 MB.
 ///
@@ -223,6 +222,45 @@ impl Task for Collide<'_> {
         collision.reversals = totals.reversals;
         collision.energy = totals.ledger(contact.psi(), final_velocity, path.energy());
         Ok(())
+    }
+}
+
+/// The totals over the phases so far.
+#[derive(Debug, Default)]
+struct Totals {
+    /// ∫ F (s·w − dL/dt) dt over the slip phases, apart from κL²/2 at the end of the last one.
+    sliding: f64,
+    /// Sign changes of the tangential velocity.
+    pub reversals: usize,
+}
+
+impl Totals {
+    /// Adds a slip phase up to `end`, where s·w is `velocity`.
+    ///
+    /// With F dt = −dv and s·w linear in v, ∫ F s·w dt is the impulse times the mean of s·w.
+    pub fn slip<M: Motion>(&mut self, sliding: &SlipPhase, end: &At<M>, velocity: f64) {
+        self.sliding += 0.5 * sliding.impulse_until(end) * (sliding.velocity + velocity);
+        self.reversals += usize::from((sliding.velocity > 0.0) != (velocity > 0.0));
+    }
+
+    /// Adds a stick phase, during which L changes from `stuck` to `released`.
+    ///
+    /// As L is 0 at both ends of contact, ∫ F dL over the slip phases is minus the change of κL²/2
+    /// over the stick phases.
+    pub fn stick(&mut self, kappa: f64, stuck: f64, released: f64) {
+        self.sliding += 0.5 * kappa * (released - stuck) * (released + stuck);
+    }
+
+    /// The energy ledger of a collision whose w is `psi` at the start and `final_velocity` at the
+    /// end, with the energy of its normal motion.
+    pub fn ledger(&self, psi: f64, final_velocity: f64, normal: EnergyLedger) -> EnergyLedger {
+        EnergyLedger {
+            tangential_initial: 0.5 * psi * psi,
+            tangential_final: 0.5 * final_velocity * final_velocity,
+            sliding: self.sliding,
+            spring_left: 0.0,
+            ..normal
+        }
     }
 }
 

@@ -11,21 +11,22 @@
 //! `stickslip-model` does not choose. Its `Engine::Exact` is this engine where [`solves`] holds.
 //!
 //! Source files in reading order: `oscillator`, `normal` the motion of the overlap, `slip` and
-//! `stick` the ends of phases, with their proofs, `places` roots along a phase, `run` a collision.
+//! `stick` the ends of phases, with their proofs, `run` a collision.
 
-mod normal;
-mod oscillator;
-mod places;
-mod run;
-mod slip;
-mod stick;
+use stickslip_contact::numerics::root::{Jet, bracketed};
+use stickslip_contact::{Collision, Contact, CoulombTest, Damping, Normal as Elastic, Tangential};
 
 use crate::domain;
 use crate::exact::ExactError;
 use normal::{Moment, Motion, Normal, Place, Stage};
 use oscillator::Oscillator;
 use slip::Drive;
-use stickslip_contact::{Collision, Contact, CoulombTest, Damping, Normal as Elastic, Tangential};
+
+mod normal;
+mod oscillator;
+mod run;
+mod slip;
+mod stick;
 
 /// How many times ε the sum of the sizes of its terms a number may be off.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -38,7 +39,6 @@ fn unless_rounding(value: f64, size: f64) -> f64 {
 /// Whether a contact is linear: its normal force is F = x + a v, or x without damping, and the
 /// stiffness of its spring is constant, its history not rescaled, and Coulomb's limit holds for
 /// spring and dashpot together.
-#[must_use]
 pub fn solves(contact: &Contact) -> bool {
     let law = contact.law();
     law.normal == Elastic::Linear
@@ -159,5 +159,41 @@ impl Linear {
             Stage::Main => Place { since: start.left, left: 0.0 },
             Stage::Tail => Place { since: start.left + self.normal.rest, left: -self.normal.rest },
         }
+    }
+}
+
+/// The place between `above`, where f > 0, and `below` behind it, where f < 0, at which f vanishes.
+/// The derivatives of f are rates in time. The first time that is tried is `guess`.
+fn falling(
+    start: &Moment,
+    [above, below]: [Place; 2],
+    guess: f64,
+    f: impl Fn(Place) -> Jet,
+) -> Place {
+    let since = |since: f64| Place { since, left: start.left - since };
+    let from_start =
+        |end: Place| since(bracketed(above.since, end.since, guess, |time| f(since(time))));
+    // The tail begins where the force vanishes: there the time since then is known.
+    if start.left <= 0.0 || below.since <= below.left {
+        return from_start(below);
+    }
+    let from_end = |begin: Place| {
+        let left = |left: f64| Place { since: start.left - left, left };
+        left(bracketed(begin.left, below.left, start.left - guess, |time| {
+            let Jet { value, slope, curvature } = f(left(time));
+            Jet { value, slope: -slope, curvature }
+        }))
+    };
+    if above.since >= above.left {
+        return from_end(above);
+    }
+    let middle = since(0.5 * start.left);
+    let Jet { value, .. } = f(middle);
+    if value > 0.0 {
+        from_end(middle)
+    } else if value < 0.0 {
+        from_start(middle)
+    } else {
+        middle
     }
 }

@@ -56,9 +56,6 @@ fn range(axis: &Axis) -> Range {
 }
 
 /// The boundaries and regions of collisions.
-///
-/// # Errors
-/// A sentence that says why there are none.
 pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String> {
     let sides = [range(x), range(y)];
     let (plane, units) = spheres.plane(sides).map_err(|error| error.to_string())?;
@@ -87,9 +84,6 @@ pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String
 }
 
 /// The boundaries and regions of a system.
-///
-/// # Errors
-/// A sentence that says why there are none.
 pub fn of_system(plane: &SystemPlane, [x, y]: [&Axis; 2]) -> Result<Value, String> {
     let window = Window { low: Point::new(x.low, y.low), high: Point::new(x.high, y.high) };
     let options = PerRun::Milliseconds.options(window.extent().min());

@@ -16,9 +16,6 @@ pub struct Axis {
 
 impl Axis {
     /// Refuses an axis without length, and a logarithmic one that does not begin above 0.
-    ///
-    /// # Errors
-    /// An object whose `error` says what is wrong.
     pub fn check(&self, name: &str) -> Result<(), Value> {
         let Self { low, high, log } = *self;
         let ordered = low.is_finite() && high.is_finite() && low < high;
@@ -36,4 +33,22 @@ impl Axis {
         let Self { low, high, log } = *self;
         if log { low * (high / low).powf(part) } else { low + (high - low) * part }
     }
+}
+
+/// The result at one point of a map.
+pub struct MapPoint {
+    /// The values of the scene's fields; NaN where there is no result.
+    pub values: [f32; 4],
+    /// The number of switches or events; [`NO_COUNT`] where there is no result.
+    pub count: u16,
+    /// The code of the itinerary.
+    pub code: u32,
+}
+
+/// The count of a point without a result.
+pub const NO_COUNT: u16 = u16::MAX;
+
+impl MapPoint {
+    /// A point without a result.
+    pub const FAILED: Self = Self { values: [f32::NAN; 4], count: NO_COUNT, code: 0 };
 }

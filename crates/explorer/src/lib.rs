@@ -11,10 +11,11 @@
 //! or an atlas shows, `axis` and `point` what it is made of, `spheres` and `system` its two kinds,
 //! `itinerary` their colours, `atlas` the boundaries, and `state` what the arrays hold.
 
+#![allow(clippy::missing_errors_doc, reason = "errors of the program are sentences for its user")]
+
 mod atlas;
 mod axis;
 mod itinerary;
-mod point;
 mod request;
 mod scene;
 mod spheres;

@@ -32,9 +32,6 @@ pub enum Request {
 }
 
 /// The answer to a request about the scene that is shown.
-///
-/// # Errors
-/// An object whose `error` says what is wrong.
 pub fn answer(request: Request, shown: &mut Option<Scene>) -> Result<Value, Value> {
     let said = |error: String| json!({ "error": error });
     match request {

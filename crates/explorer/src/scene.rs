@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::atlas;
 use crate::axis::Axis;
-use crate::point::MapPoint;
+use crate::axis::MapPoint;
 use crate::spheres::{Spheres, SpheresRequest};
 use crate::system::{SystemPlane, SystemRequest};
 
@@ -44,9 +44,6 @@ pub enum Kind {
 
 impl Scene {
     /// The plane that a page describes.
-    ///
-    /// # Errors
-    /// An object whose `error` says what is not possible.
     pub fn new(SceneRequest { x, y, kind }: SceneRequest) -> Result<Self, Value> {
         x.check("x")?;
         y.check("y")?;
@@ -66,9 +63,6 @@ impl Scene {
     }
 
     /// The collisions of the plane.
-    ///
-    /// # Errors
-    /// The plane is of another kind.
     pub fn spheres(&self) -> Result<&Spheres, Value> {
         match &self.kind {
             Kind::Spheres(spheres) => Ok(spheres),
@@ -98,9 +92,6 @@ impl Scene {
     }
 
     /// The boundaries and regions of the plane.
-    ///
-    /// # Errors
-    /// A sentence that says why there are none.
     pub fn atlas(&self) -> Result<Value, String> {
         let [x, y] = &self.axes;
         match &self.kind {

@@ -11,8 +11,8 @@ use stickslip_model::{
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Statistics;
 
+use crate::axis::MapPoint;
 use crate::itinerary;
-use crate::point::MapPoint;
 
 /// The numbers of a moment of a course.
 pub const MOMENT: usize = 8;
@@ -74,9 +74,6 @@ enum Parameters {
 
 impl Spheres {
     /// The collisions that a page describes.
-    ///
-    /// # Errors
-    /// An object whose `error` says what is out of its range.
     pub fn new(request: &SpheresRequest) -> Result<Self, Value> {
         let SpheresRequest { axes, damping, tangential_damping, mu, alpha, .. } = *request;
         let refused = |error: InvalidValue| json!({ "error": error.to_string() });
@@ -175,9 +172,6 @@ impl Spheres {
     }
 
     /// The collision at a point as the program prints it, with an estimate of its error.
-    ///
-    /// # Errors
-    /// A sentence that says why there is none.
     pub fn document(&self, point: [f64; 2]) -> Result<Value, String> {
         let contact = self.contact(point).map_err(|error| error.to_string())?;
         let engine = Engine::Auto.resolved(&contact);
@@ -201,9 +195,6 @@ impl Spheres {
     }
 
     /// Appends the course at a point to `numbers`; returns the number of its moments.
-    ///
-    /// # Errors
-    /// A sentence that says why there is none.
     pub fn course(
         &self,
         point: [f64; 2],
@@ -236,9 +227,6 @@ impl Spheres {
 
 /// The collision of a contact by the best engine for it, as [`Engine::Auto`] has it. An engine that
 /// is chosen at run time would bring methods along that the page does not need.
-///
-/// # Errors
-/// A sentence that says why there is none.
 pub fn collide(contact: Contact) -> Result<(Collision, Option<Statistics>), String> {
     let mut collision = Collision::before(contact);
     let statistics = collide_into(contact, &mut collision)?;
@@ -259,9 +247,6 @@ fn collide_into(contact: Contact, collision: &mut Collision) -> Result<Option<St
 /// itinerary, from above: their ends and itineraries. Damping is 0.
 ///
 /// Boundaries are found between even steps, of which there are [`STEPS`], by bisection.
-///
-/// # Errors
-/// A sentence that says why there are none.
 pub fn line(kappa: f64, highest: f64) -> Result<Value, String> {
     const STEPS: u32 = 2000;
     let itinerary = |psi: f64| -> Result<String, String> {

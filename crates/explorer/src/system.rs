@@ -8,8 +8,8 @@ use stickslip_expression::{System, SystemFamily, outcome_name};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 use stickslip_tracer::{DynamicFired, Point};
 
+use crate::axis::MapPoint;
 use crate::itinerary;
-use crate::point::MapPoint;
 
 /// A run as a page asks for it.
 #[derive(Deserialize)]
@@ -47,9 +47,6 @@ const MOST_EVENTS: usize = 20_000;
 const MOST_POINTS: usize = 6_000;
 
 /// What a text consists of.
-///
-/// # Errors
-/// An object with the sentence, the line and the column of the mistake.
 pub fn parse(text: &str) -> Result<Value, Value> {
     let system = read(text)?;
     let parameters = system.parameters.iter().map(|parameter| {
@@ -89,9 +86,6 @@ fn values(system: &System, set: &BTreeMap<String, f64>) -> Vec<f64> {
 
 impl RunRequest {
     /// The run: its events, its course, and how it ended.
-    ///
-    /// # Errors
-    /// An object whose `error` says why there is none.
     pub fn run(&self) -> Result<Value, Value> {
         let system = read(&self.text)?;
         let runnable = system.with(&values(&system, &self.set)).map_err(said)?;
@@ -151,9 +145,6 @@ impl RunRequest {
 
 impl SystemPlane {
     /// The plane that a page describes.
-    ///
-    /// # Errors
-    /// An object whose `error` says what is not possible.
     pub fn new(request: &SystemRequest) -> Result<Self, Value> {
         let SystemRequest { run, across, up, most_events } = request;
         let system = read(&run.text)?;

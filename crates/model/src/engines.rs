@@ -55,25 +55,6 @@ pub struct Tolerances {
     pub atol: f64,
 }
 
-/// The reason why options choose no engine.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidChoice {
-    /// No method has the name, or a tolerance is out of range.
-    #[error(transparent)]
-    Value(#[from] InvalidValue),
-    /// The exact solution has no tolerances.
-    #[error(
-        "{name} {value:?} has no effect with the method exact, which has no tolerances; \
-         expected with dop853 and dopri5 only"
-    )]
-    Unused {
-        /// `rtol` or `atol`.
-        name: &'static str,
-        /// The tolerance.
-        value: f64,
-    },
-}
-
 impl Tolerances {
     /// Defaults of Dormand–Prince 8(5,3), with which w is within 1e-12.
     pub const DOP853: Self = Self { rtol: Collider::RTOL, atol: Collider::ATOL };
@@ -89,13 +70,13 @@ impl Engine {
     /// tolerance requires an integration.
     ///
     /// # Errors
-    /// [`InvalidChoice`]: no method has this name, a tolerance would have no effect, or is out of
-    /// range.
+    /// [`InvalidValue`]: no method has this name, or a tolerance is out of range. A tolerance that
+    /// would have no effect is said in a [phrase](stickslip_solver::GivenValue::Phrase).
     pub fn chosen(
         method: &str,
         rtol: Option<f64>,
         atol: Option<f64>,
-    ) -> Result<Self, InvalidChoice> {
+    ) -> Result<Self, InvalidValue> {
         let tolerances = |usual: Tolerances| Tolerances {
             rtol: rtol.unwrap_or(usual.rtol),
             atol: atol.unwrap_or(usual.atol),
@@ -106,10 +87,15 @@ impl Engine {
             ("dop853", _) | ("auto", Some(_)) => Self::Dop853(tolerances(Tolerances::DOP853)),
             ("dopri5", _) => Self::Dopri5(tolerances(Tolerances::DOPRI5)),
             ("exact" | "auto", None) => Self::Exact,
-            ("exact", Some((name, value))) => return Err(InvalidChoice::Unused { name, value }),
+            ("exact", Some((name, value))) => {
+                let phrase = format!(
+                    "{value:?} has no effect with the method exact, which has no tolerances"
+                );
+                return Err(InvalidValue::phrase(name, phrase, "with dop853 and dopri5 only"));
+            }
             (other, _) => {
                 let expected = "\"auto\", \"exact\", \"dop853\" or \"dopri5\"";
-                return Err(InvalidValue::new("method", other, expected).into());
+                return Err(InvalidValue::new("method", other, expected));
             }
         };
         if let Some(Tolerances { rtol, atol }) = engine.tolerances() {
@@ -127,14 +113,13 @@ impl Engine {
         method: &str,
         rtol: Option<f64>,
         atol: Option<f64>,
-    ) -> Result<Self, InvalidChoice> {
+    ) -> Result<Self, InvalidValue> {
         let papers = law == (Law::PAPER, 0.0);
         let method = if method == "auto" && !papers { "dop853" } else { method };
         Self::chosen(method, rtol, atol)
     }
 
     /// The name of the method: `dop853`, `dopri5`, `exact` or `auto`.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Dop853(_) => "dop853",
@@ -145,7 +130,6 @@ impl Engine {
     }
 
     /// The tolerances of an integrator; `None` for [`Self::Exact`] and [`Self::Auto`].
-    #[must_use]
     pub fn tolerances(&self) -> Option<Tolerances> {
         match *self {
             Self::Dop853(tolerances) | Self::Dopri5(tolerances) => Some(tolerances),
@@ -154,7 +138,6 @@ impl Engine {
     }
 
     /// The engine that computes the collision of `contact`: itself, or what [`Self::Auto`] chooses.
-    #[must_use]
     pub fn resolved(self, contact: &Contact) -> Self {
         match self {
             // The range of the exact solution contains the range of the integrators.

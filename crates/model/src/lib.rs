@@ -49,7 +49,7 @@ pub use engines::error::{CollisionError, CollisionFailure};
 #[doc(hidden)]
 pub use engines::integrator as collision;
 pub use engines::integrator::Collider;
-pub use engines::{Engine, Estimate, InvalidChoice, Tolerances};
+pub use engines::{Engine, Estimate, Tolerances};
 pub use engines::{history, integrator, sensitivity};
 pub use spheres::Reduction;
 #[doc(inline)]

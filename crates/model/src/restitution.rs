@@ -12,28 +12,8 @@ use stickslip_contact::{Contact, Damping, End, InvalidValue, Law, Normal, preset
 use crate::engines::Engine;
 use crate::engines::error::CollisionError;
 
-/// Why no damping is found.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RestitutionError {
-    /// The coefficient or the damping is out of its range.
-    #[error(transparent)]
-    Value(#[from] InvalidValue),
-    /// No damping makes the contact so inelastic.
-    #[error("no damping of this law has e_n = {eps_n:?}; expected {least:?} to 1")]
-    Unreachable {
-        /// The coefficient.
-        eps_n: f64,
-        /// The least that was reached.
-        least: f64,
-    },
-    /// A contact cannot be computed.
-    #[error(transparent)]
-    Collision(#[from] Box<CollisionError>),
-}
-
 /// Whether ε_n of the law depends on the velocity: the same damping constant is another scaled
 /// damping a.
-#[must_use]
 pub fn depends_on_velocity(law: Law) -> bool {
     law.damping != Damping::None && critical_damping(law).is_none()
 }
@@ -45,7 +25,6 @@ pub fn depends_on_velocity(law: Law) -> bool {
 /// ζ = −ln ε_n/√(π² + ln² ε_n), in both cases.
 ///
 /// Source: Antypov and Elliott, EPL 94, 50004 (2011).
-#[must_use]
 pub fn critical_damping(law: Law) -> Option<f64> {
     match (law.normal, law.damping) {
         (Normal::Linear, Damping::Linear) => Some(2.0),
@@ -72,8 +51,8 @@ fn attracts(law: Law) -> bool {
 /// ```
 ///
 /// # Errors
-/// [`RestitutionError`]: the damping is out of its range, or the contact cannot be computed.
-pub fn eps_n(law: Law, damping: f64) -> Result<f64, RestitutionError> {
+/// [`CollisionError`]: the damping is out of its range, or the contact cannot be computed.
+pub fn eps_n(law: Law, damping: f64) -> Result<f64, CollisionError> {
     // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
     // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(law, 0.0)?;
@@ -84,7 +63,7 @@ pub fn eps_n(law: Law, damping: f64) -> Result<f64, RestitutionError> {
     if (law.normal, law.damping) == (Normal::Linear, Damping::Linear) {
         return Ok(until_zero_force(0.5 * damping));
     }
-    let (collision, _) = Engine::Auto.collide(contact).map_err(Box::new)?;
+    let (collision, _) = Engine::Auto.collide(contact)?;
     Ok(collision.eps_n)
 }
 
@@ -105,6 +84,12 @@ fn until_zero_force(ratio: f64) -> f64 {
     (-ratio * angle).exp()
 }
 
+/// No damping of a law has the wanted ε_n, since it reaches no less than `least`.
+fn unreachable(wanted: f64, least: f64) -> CollisionError {
+    let phrase = format!("of this law has e_n = {wanted:?}");
+    InvalidValue::phrase("no damping", phrase, format!("{least:?} to 1")).into()
+}
+
 /// The scaled damping a with which the law has this ε_n, above 0 and at most 1: in closed form
 /// where a contact with linear force and damping, or with Hertz' and Tsuji's, lasts until x = 0;
 /// otherwise solved, with an ε_n within 1e-12.
@@ -121,9 +106,9 @@ fn until_zero_force(ratio: f64) -> f64 {
 /// ```
 ///
 /// # Errors
-/// [`RestitutionError`]: ε_n is out of its range, or no damping of this law has it, or a contact
+/// [`CollisionError`]: ε_n is out of its range, or no damping of this law has it, or a contact
 /// cannot be computed.
-pub fn damping(law: Law, wanted: f64) -> Result<f64, RestitutionError> {
+pub fn damping(law: Law, wanted: f64) -> Result<f64, CollisionError> {
     /// The largest damping that is tried.
     const MOST: f64 = 128.0;
     let ok = wanted > 0.0 && wanted <= 1.0;
@@ -132,7 +117,7 @@ pub fn damping(law: Law, wanted: f64) -> Result<f64, RestitutionError> {
         return Ok(0.0);
     }
     if law.damping == Damping::None {
-        return Err(RestitutionError::Unreachable { eps_n: wanted, least: 1.0 });
+        return Err(unreachable(wanted, 1.0));
     }
     if let (Some(critical), true) = (critical_damping(law), attracts(law)) {
         let log = -wanted.ln();
@@ -148,7 +133,7 @@ pub fn damping(law: Law, wanted: f64) -> Result<f64, RestitutionError> {
             break least - wanted;
         }
         if high >= most {
-            return Err(RestitutionError::Unreachable { eps_n: wanted, least });
+            return Err(unreachable(wanted, least));
         }
         (low, above) = (high, least - wanted);
         high = f64::min(2.0 * high, most);
@@ -282,8 +267,8 @@ fn keywords(name: &str) -> &'static [(&'static str, Formula, &'static str)] {
 /// ```
 ///
 /// # Errors
-/// [`RestitutionError`]: as [`damping`].
-pub fn of(name: &str, e_n: f64) -> Result<Option<Restitution>, RestitutionError> {
+/// [`CollisionError`]: as [`damping`].
+pub fn of(name: &str, e_n: f64) -> Result<Option<Restitution>, CollisionError> {
     let Some(preset) = presets::find(name) else { return Ok(None) };
     let law = preset.law;
     let keywords = keywords(preset.name).iter().map(|&(keyword, formula, source)| {
@@ -291,15 +276,15 @@ pub fn of(name: &str, e_n: f64) -> Result<Option<Restitution>, RestitutionError>
         Ok(Keyword { keyword, source, damping, e_n: eps_n(law, damping)? })
     });
     let found = of_law(law, e_n)?;
-    let keywords = keywords.collect::<Result<_, RestitutionError>>()?;
+    let keywords = keywords.collect::<Result<_, CollisionError>>()?;
     Ok(Some(Restitution { keywords, ..found }))
 }
 
 /// As [`of`], for a law that may have no name, and without keywords.
 ///
 /// # Errors
-/// [`RestitutionError`]: as [`damping`].
-pub fn of_law(law: Law, e_n: f64) -> Result<Restitution, RestitutionError> {
+/// [`CollisionError`]: as [`damping`].
+pub fn of_law(law: Law, e_n: f64) -> Result<Restitution, CollisionError> {
     let damping = damping(law, e_n)?;
     let critical_damping_ratio = critical_damping(law).map(|critical| damping / critical);
     Ok(Restitution { e_n, damping, critical_damping_ratio, keywords: Vec::new() })

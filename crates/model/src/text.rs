@@ -11,7 +11,6 @@
 /// assert_eq!(number(-0.041652207, 4), "−0.04165");
 /// assert_eq!(number(-2.5e7, 4), "−2.5×10^{7}");
 /// ```
-#[must_use]
 pub fn number(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.*e}", digits.clamp(1, 17) - 1);
     let (mantissa, exponent) = rounded.split_once('e').unwrap_or((&rounded, "0"));
@@ -26,7 +25,6 @@ pub fn number(value: f64, digits: usize) -> String {
 }
 
 /// `number` with minus signs, which are as wide as plus signs, for hyphens.
-#[must_use]
 pub fn minus(number: &str) -> String {
     number.replace('-', "−")
 }

@@ -18,6 +18,8 @@ use std::fmt;
 /// assert_eq!(error.to_string(), "psi 2.0:1.0 is out of range; expected LO:HI with LO < HI");
 /// let error = InvalidValue::new("prefix", "2d", "a letter first");
 /// assert_eq!(error.to_string(), "prefix = \"2d\"; expected a letter first");
+/// let error = InvalidValue::phrase("mu", "is free twice", "different names");
+/// assert_eq!(error.to_string(), "mu is free twice; expected different names");
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{name}{}{value}{}; expected {expected}", value.sign(), value.verdict())]
@@ -53,6 +55,15 @@ impl InvalidValue {
         expected: impl Into<Cow<'static, str>>,
     ) -> Self {
         Self { name: name.into(), value: value.into(), expected: expected.into() }
+    }
+
+    /// The error of `name`, with what is wrong in words that go on behind the name.
+    pub fn phrase(
+        name: impl Into<Cow<'static, str>>,
+        phrase: impl Into<Box<str>>,
+        expected: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self::new(name, GivenValue::Phrase(phrase.into()), expected)
     }
 
     /// Nothing if the value is `accepted`.

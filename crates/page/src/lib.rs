@@ -15,7 +15,6 @@ const PLACE: &str = r#"<meta name="stickslip-view" content="">"#;
 
 /// The page that opens with a view: a link that was copied from it, or what follows the `#` there.
 /// Fields that are unknown, or have no usable value, are as usual.
-#[must_use]
 pub fn showing(link: &str) -> String {
     let view = link.split_once('#').map_or(link, |(_, view)| view);
     // In an address these three are written with %; here they would end the attribute.
@@ -28,7 +27,6 @@ pub fn showing(link: &str) -> String {
 /// ```
 /// assert_eq!(stickslip_page::view_of_system("x' = 1"), "tab=system&text=x%27%20%3D%201");
 /// ```
-#[must_use]
 pub fn view_of_system(text: &str) -> String {
     use std::fmt::Write;
     let mut view = String::from("tab=system&text=");

@@ -9,13 +9,12 @@
 //! - `regions`: the atlas itself
 //! - `tracing` and `draft`: how an atlas is made, and `error`: why there is none
 //! - `verification`: what the comparison with collisions found
-//! - `locate` and `crossings`: how points and lines are looked up in it
-//! - `angles`: the lines of impacts of one speed
-//! - `polyline`, `geojson` and `document`: how it is drawn, exported, written and read back
+//! - `locate`: how points are looked up in it
+//! - `angles`: where lines cross its boundaries, also those of impacts of one speed
+//! - `geojson` and `document`: how it is exported, written and read back
 
 mod angles;
 mod boundary;
-pub(crate) mod crossings;
 #[cfg(feature = "serde")]
 mod document;
 mod draft;
@@ -24,7 +23,6 @@ mod frame;
 #[cfg(feature = "geojson")]
 mod geojson;
 mod locate;
-mod polyline;
 mod regions;
 mod tracing;
 mod verification;
@@ -35,15 +33,15 @@ pub use boundary::BoundaryKind;
 pub(crate) use boundary::itinerary;
 #[cfg(feature = "serde")]
 pub use document::{
-    BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,
-    Meeting, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
+    AtlasDocument, AtlasDocumentError, BoundaryEnd, BoundaryFields, ExtremalParameter,
+    ExtremumFields, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
 };
-pub use error::{AtlasError, LabelError};
+pub use error::AtlasError;
 pub use frame::{Frame, RatioRange};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, ParameterPlace, Unlocated};
-pub(crate) use polyline::polyline;
+pub(crate) use regions::polyline;
 pub use regions::{Atlas, Regions, switch_count};
 pub use tracing::{divide, trace};
 pub(crate) use tracing::{require_traceable, trace_options};

@@ -2,8 +2,6 @@
 
 use stickslip_tracer::{Point, Window};
 
-use crate::range::Range;
-
 /// Traced coordinates of the (κ, ψ) plane, in which boundaries bend evenly.
 ///
 /// They are x = ln(κ/κ₀)/w and y = ln(1 + (ψ − ψ₀)/s)/h. Windows of an ordinary shape have the
@@ -32,7 +30,6 @@ impl Chart {
     pub const PLAIN: Self = Self { kappa: 1.0, width: 1.0, psi: 0.0, spread: 1.0, height: 1.0 };
 
     /// The chart of a window.
-    #[must_use]
     pub fn of(kappa: Range, psi: Range) -> Self {
         /// The least ψ of an ordinary window.
         const SMALLEST: f64 = 1e-3;
@@ -44,7 +41,6 @@ impl Chart {
 
     /// The chart of a window of two velocities, which take the places of κ and ψ: their logarithms
     /// from 0 on, or from 0 to 1 if the window is narrow or long.
-    #[must_use]
     pub fn of_velocities(normal: Range, tangential: Range) -> Self {
         let plain = Self::logarithms(normal, tangential);
         if plain.is_even(normal, tangential) { plain } else { Self::unit(normal, tangential) }
@@ -73,13 +69,11 @@ impl Chart {
     }
 
     /// x of κ.
-    #[must_use]
     pub fn abscissa(&self, kappa: f64) -> f64 {
         (kappa / self.kappa).ln() / self.width
     }
 
     /// The traced point of κ and ψ.
-    #[must_use]
     pub fn point(&self, kappa: f64, psi: f64) -> Point {
         let x = self.abscissa(kappa);
         let y = ((psi - self.psi) / self.spread).ln_1p() / self.height;
@@ -87,14 +81,12 @@ impl Chart {
     }
 
     /// κ and ψ of a traced point: the inverse of [`Self::point`].
-    #[must_use]
     pub fn parameters(&self, point: &Point) -> [f64; 2] {
         let kappa = self.kappa * (point.x * self.width).exp();
         [kappa, self.psi + self.spread * (point.y * self.height).exp_m1()]
     }
 
     /// A window in traced coordinates.
-    #[must_use]
     pub fn window(&self, kappa: Range, psi: Range) -> Window {
         Window { low: self.point(kappa.low, psi.low), high: self.point(kappa.high, psi.high) }
     }
@@ -103,4 +95,14 @@ impl Chart {
     pub(crate) fn scale(&self, psi: f64) -> f64 {
         self.height * (self.spread - self.psi + psi)
     }
+}
+
+/// An interval of a quantity that is never negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Range {
+    /// Lower end, 0 or above.
+    pub low: f64,
+    /// Upper end, above the lower one.
+    pub high: f64,
 }

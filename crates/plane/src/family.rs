@@ -1,11 +1,11 @@
 //! Collisions over the (κ, ψ) plane, as a family that the tracer can follow.
 
-use stickslip_model::exact::{self, ExactError};
+use stickslip_model::exact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{Contact, Engine, InvalidValue, Law};
+use stickslip_model::{CollisionError, Contact, Engine, InvalidValue, Law};
 use stickslip_solver::margin::Margin;
-use stickslip_solver::{Dop853, Options, Outcome, Start};
+use stickslip_solver::{Dop853, Options, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
 };
@@ -17,9 +17,9 @@ pub use gaining::GainingFamily;
 pub use general::GeneralFamily;
 
 use crate::chart::Chart;
+use crate::chart::Range;
 use crate::label::{CollisionEvent, CollisionLabel};
 use crate::oblique::Oblique;
-use crate::range::Range;
 use crate::sheet::Sheet;
 
 /// Collisions over a window of two parameters: κ and ψ at one scaled damping, or the velocities of
@@ -78,20 +78,6 @@ pub enum CollisionFamily {
     General(GeneralFamily),
     /// Collisions with any law, with labels that also say whether |ε_t| is above 1.
     Gaining(GainingFamily),
-}
-
-/// A collision of a family cannot be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CollisionFamilyError {
-    /// The exact solution failed.
-    #[error(transparent)]
-    Exact(#[from] ExactError),
-    /// The integration failed.
-    #[error("{}", .0.error)]
-    Integrated(#[from] FamilyError),
-    /// The integration stopped before the end of contact.
-    #[error("the integration stopped before the end of contact: {0:?}")]
-    Unfinished(Outcome),
 }
 
 impl CollisionPlane {
@@ -161,7 +147,6 @@ impl CollisionPlane {
     }
 
     /// The same collisions in other traced coordinates.
-    #[must_use]
     pub fn with_chart(self, chart: Chart) -> Self {
         Self { sheet: Sheet { chart, ..self.sheet }, ..self }
     }
@@ -177,7 +162,6 @@ impl CollisionPlane {
     }
 
     /// The names of the two parameters.
-    #[must_use]
     pub fn names(&self) -> [&'static str; 2] {
         match self.parameters {
             Parameters::Scaled | Parameters::Oblique(_) => Self::SCALED,
@@ -186,37 +170,31 @@ impl CollisionPlane {
     }
 
     /// The window in its traced coordinates.
-    #[must_use]
     pub fn sheet(&self) -> &Sheet {
         &self.sheet
     }
 
     /// The traced coordinates.
-    #[must_use]
     pub fn chart(&self) -> &Chart {
         &self.sheet.chart
     }
 
     /// The traced point of two parameters: κ and ψ, or the velocities.
-    #[must_use]
     pub fn point(&self, x: f64, y: f64) -> Point {
         self.chart().point(x, y)
     }
 
     /// The two parameters of a traced point: the inverse of [`Self::point`].
-    #[must_use]
     pub fn parameters(&self, point: &Point) -> [f64; 2] {
         self.chart().parameters(point)
     }
 
     /// The window in traced coordinates.
-    #[must_use]
     pub fn window(&self) -> Window {
         self.sheet.window()
     }
 
     /// The parameters of the four corners of the window.
-    #[must_use]
     pub fn corners(&self) -> [[f64; 2]; 4] {
         let [x, y] = self.sheet.sides;
         [[x.low, y.low], [x.high, y.low], [x.low, y.high], [x.high, y.high]]
@@ -255,7 +233,6 @@ impl CollisionPlane {
 
     /// The collisions as a family: by the exact solution wherever there is one, which makes a trace
     /// ten times as fast, and by integration elsewhere.
-    #[must_use]
     pub fn family(self) -> CollisionFamily {
         match Engine::Auto.resolved(&self.first) {
             Engine::Exact => CollisionFamily::Exact(self),
@@ -264,7 +241,6 @@ impl CollisionPlane {
     }
 
     /// The collisions as a family that is always integrated. Margins are accurate to about 1e-14.
-    #[must_use]
     pub fn integrated(self) -> CollisionFamily {
         if !self.first.obeys_paper() {
             return CollisionFamily::General(self.general());
@@ -274,7 +250,6 @@ impl CollisionPlane {
     }
 
     /// The collisions, integrated as for any law, with one more boundary: where |ε_t| is 1.
-    #[must_use]
     pub fn gaining(self) -> CollisionFamily {
         CollisionFamily::Gaining(GainingFamily::new(self))
     }
@@ -334,45 +309,50 @@ fn fired(
     family: &HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>,
     point: &Point,
     itinerary: Itinerary,
-) -> Result<CollisionLabel, CollisionFamilyError> {
+) -> Result<CollisionLabel, CollisionError> {
     if let Itinerary::Fires(guards) = itinerary {
         return Ok(events(&guards));
     }
     Err(match family.outcome(point) {
-        Ok(outcome) => CollisionFamilyError::Unfinished(outcome),
-        Err(error) => FamilyError { point: *point, error }.into(),
+        Ok((outcome, time)) => CollisionError::Unfinished { outcome, time },
+        Err(error) => error.into(),
     })
+}
+
+/// The error of a run; its place is known.
+fn of_run(error: FamilyError) -> CollisionError {
+    error.error.into()
 }
 
 impl Family for CollisionFamily {
     type Label = CollisionLabel;
     type Margin = Margin;
-    type Error = CollisionFamilyError;
+    type Error = CollisionError;
 
-    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionFamilyError> {
+    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => {
                 CollisionEvent::label(&exact::collide(plane.contact_or_any(point))?)
             }
-            Self::Integrated(family) => fired(family, point, family.label(point)?)?,
+            Self::Integrated(family) => fired(family, point, family.label(point).map_err(of_run)?)?,
             Self::General(family) => family.label(point),
             Self::Gaining(family) => family.label(point)?,
         })
     }
 
-    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionFamilyError> {
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => exact::margin(&plane.contact_or_any(point), margin)?,
-            Self::Integrated(family) => family.margin(point, margin)?,
+            Self::Integrated(family) => family.margin(point, margin).map_err(of_run)?,
             Self::General(family) => family.margin(point, margin),
             Self::Gaining(family) => family.margin(point, margin)?,
         })
     }
 
-    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionFamilyError> {
+    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => exact::moved(&plane.contact_or_any(point), margin)?,
-            Self::Integrated(family) => family.moved(point, margin)?,
+            Self::Integrated(family) => family.moved(point, margin).map_err(of_run)?,
             Self::General(family) => {
                 family.near_miss(point, margin).map_or_else(|| margin.clone(), |(moved, _)| moved)
             }
@@ -403,17 +383,14 @@ impl Family for CollisionFamily {
         }
     }
 
-    fn free_run(
-        &self,
-        point: &Point,
-    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<CollisionLabel, Margin>, CollisionError> {
         Ok(match self {
             Self::Exact(plane) => {
                 let found = exact::margins(&plane.contact_or_any(point))?;
                 FreeRun { label: events(&found.fired), margins: found.near_misses }
             }
             Self::Integrated(family) => {
-                let FreeRun { label, margins } = family.free_run(point)?;
+                let FreeRun { label, margins } = family.free_run(point).map_err(of_run)?;
                 FreeRun { label: fired(family, point, label)?, margins }
             }
             Self::General(family) => family.free_run(point),

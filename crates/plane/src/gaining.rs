@@ -14,10 +14,9 @@ use crate::family::{CollisionFamily, CollisionPlane};
 use crate::label::CollisionLabel;
 use crate::progress::{InParallel, Watch};
 
+/// The name of the layout of its file, with its version.
 #[cfg(feature = "serde")]
-mod document;
-#[cfg(feature = "serde")]
-pub use document::{Document, SCHEMA};
+pub const SCHEMA: &str = "stickslip.gaining/1";
 
 /// The regions of a window in which |ε_t| is above 1.
 #[derive(Clone, Debug)]
@@ -36,7 +35,7 @@ pub struct Gaining {
 /// A line in the window on which |ε_t| is 1.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Line {
+pub struct GainingLine {
     /// ε_t along the line: 1 or −1.
     pub eps_t: f64,
     /// Whether |ε_t| is above 1 on the left of the line, in the order of its points, with κ to the
@@ -96,22 +95,20 @@ fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaini
     };
     let surveyor = Surveyor { options, executor: InParallel, watch };
     let family = plane.gaining();
-    let atlas = surveyor
-        .atlas(&family, &plane.window())
-        .map_err(|error| AtlasError::of_atlas(&plane, error))?;
+    let atlas =
+        surveyor.atlas(&family, &plane.window()).map_err(|error| AtlasError::of(&plane, error))?;
     Ok(Gaining { frame, tolerance, plane, family, atlas })
 }
 
 impl Gaining {
     /// The lines on which |ε_t| is 1. A line ends where the switches change, and another goes on
     /// there.
-    #[must_use]
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<GainingLine> {
         let extent = self.atlas.plane.window().extent();
         let line = |curve: &Curve<CollisionLabel, Margin>| {
             let eps_t = level(&curve.margin)?;
             let points = polyline(self.plane.chart(), &extent, curve);
-            Some(Line { eps_t, gains_left: gains(&curve.sides[0]), points })
+            Some(GainingLine { eps_t, gains_left: gains(&curve.sides[0]), points })
         };
         self.atlas.plane.curves().iter().filter_map(line).collect()
     }
@@ -119,7 +116,6 @@ impl Gaining {
     /// Whether |ε_t| of the collision with κ and ψ of a contact is above 1; damping and law are
     /// taken from the window. On a line, and where regions are in doubt, the collision itself
     /// decides. `None` outside of the window, and where the collision cannot be computed.
-    #[must_use]
     pub fn gains(&self, contact: &Contact) -> Option<bool> {
         let point = self.plane.point(contact.kappa(), contact.psi());
         let label = self.atlas.decide(&self.family, &point).ok()??;
@@ -127,7 +123,6 @@ impl Gaining {
     }
 
     /// The least and the largest κ and ψ along the lines; `None` if there are none.
-    #[must_use]
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let lines = self.lines();
         let mut points = lines.iter().flat_map(|line| &line.points);
@@ -139,21 +134,33 @@ impl Gaining {
     }
 
     /// Whether nothing speaks against the regions: all changes are explained, and all runs agree.
-    #[must_use]
     pub fn agrees(&self) -> bool {
         self.atlas.agrees()
     }
 
     /// What speaks against the lines, in sentences; none if nothing does.
-    #[must_use]
     pub fn objections(&self) -> Vec<String> {
         self.atlas.doubts(self).map_or_else(Vec::new, |doubts| doubts.sentences())
     }
 
     /// The numbers of objections and the first one; `None` if nothing speaks against the lines.
-    #[must_use]
     pub fn objection(&self) -> Option<String> {
         self.atlas.doubts(self).map(|doubts| doubts.objection())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Gaining {
+    /// The lines in the layout of their file, [`SCHEMA`].
+    pub fn document(&self) -> serde_json::Value {
+        serde_json::json!({
+            "schema": SCHEMA,
+            "window": crate::atlas::WindowFields::new(&self.frame),
+            "tolerance": self.tolerance,
+            "agrees": self.agrees(),
+            "objections": self.objections(),
+            "lines": self.lines(),
+        })
     }
 }
 

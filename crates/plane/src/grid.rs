@@ -5,7 +5,7 @@ use std::fmt;
 use stickslip_model::spheres::BodyPair;
 use stickslip_model::{Contact, InvalidValue, Law, Reduction};
 
-use crate::range::Range;
+use crate::chart::Range;
 
 /// An interval divided into cells of equal width.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,6 @@ impl GridAxis {
     ///
     /// Collisions are computed at centres, so that an interval may begin at 0, where there is no
     /// collision.
-    #[must_use]
     pub fn centre(&self, index: usize) -> f64 {
         let Range { low, high } = self.range;
         low + (high - low) * ((index as f64 + 0.5) / self.cells as f64)
@@ -113,27 +112,23 @@ pub enum Extent {
 
 impl Grid {
     /// A window of collisions that obey the paper's law.
-    #[must_use]
     pub fn new(columns: GridAxis, rows: GridAxis, coordinates: Coordinates) -> Self {
         Self { columns, rows, coordinates, law: Law::PAPER, tangential_damping: 0.0 }
     }
 
     /// Number of points, one for each cell; the largest number if there are more.
-    #[must_use]
     pub fn points(&self) -> usize {
         self.columns.cells.saturating_mul(self.rows.cells)
     }
 
     /// Column and row of a point. Points are counted row by row. A grid without columns has no
     /// points, and all are said to be in its first row.
-    #[must_use]
     pub fn cell(&self, point: usize) -> (usize, usize) {
         let cells = self.columns.cells.max(1);
         (point % cells, point / cells)
     }
 
     /// The point of a cell: the inverse of [`Self::cell`].
-    #[must_use]
     pub fn point(&self, column: usize, row: usize) -> usize {
         row * self.columns.cells + column
     }
@@ -148,7 +143,6 @@ impl Grid {
     }
 
     /// The quantities along a row and along a column.
-    #[must_use]
     pub fn axes(&self) -> [Quantity; 2] {
         match self.coordinates {
             Coordinates::Psi { .. } => [Quantity::Kappa, Quantity::Psi],
@@ -158,7 +152,6 @@ impl Grid {
     }
 
     /// The quantities that are stored with the results, in this order.
-    #[must_use]
     pub fn quantities(&self) -> &'static [Quantity] {
         use Quantity::{Damping, Kappa, Normal, Psi, Ratio, Tangential};
         match self.coordinates {
@@ -169,7 +162,6 @@ impl Grid {
     }
 
     /// The value of `quantity` at the centre of a cell; NaN where there is no collision.
-    #[must_use]
     pub fn value(&self, quantity: Quantity, column: usize, row: usize) -> f64 {
         let parameter = |index: usize| self.parameters(column, row).map_or(f64::NAN, |p| p[index]);
         match quantity {
@@ -182,7 +174,6 @@ impl Grid {
     }
 
     /// The part of the grid over which `quantity` varies.
-    #[must_use]
     pub fn extent(&self, quantity: Quantity) -> Extent {
         match (quantity, self.coordinates) {
             (Quantity::Psi, Coordinates::Velocities { .. }) => Extent::Points,
@@ -192,7 +183,6 @@ impl Grid {
     }
 
     /// The largest κ in the grid, as far as it can be computed; 0 if the grid has no cells.
-    #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
         if self.points() == 0 {
             return 0.0;
@@ -242,7 +232,6 @@ impl fmt::Display for Grid {
 
 impl Quantity {
     /// The name of the quantity's array or column in a file.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Kappa => "kappa",

@@ -53,7 +53,6 @@ impl CollisionEvent {
     }
 
     /// The label of a collision with the paper's law, whichever engine computed it.
-    #[must_use]
     pub fn label(collision: &Collision) -> CollisionLabel {
         let mut side = Side::Positive;
         let event = |switch: &stickslip_model::Switch| {

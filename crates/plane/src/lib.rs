@@ -10,12 +10,12 @@
 //!
 //! Start reading in [`family`]. The modules in reading order:
 //!
-//! - [`chart`]: the coordinates in which the plane is traced
+//! - [`chart`]: windows, and the coordinates in which the plane is traced
 //! - [`label`] and [`family`]: collisions as a family for the tracer
 //! - [`oblique`]: impacts of one speed at all angles
 //! - [`sheet`]: a window in traced coordinates, and the accuracy of boundaries in it
-//! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
-//! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
+//! - [`grid`]: windows divided into cells
+//! - [`sweep`]: the results of a grid, and how they are computed
 //! - [`progress`]: reports of how far a long computation has come, cancellation and threads
 //! - [`atlas`]: boundaries and regions, traced and verified
 //! - [`mod@stack`]: atlases over the damping, and what changes between them
@@ -47,22 +47,20 @@ pub mod grid;
 pub mod label;
 pub mod oblique;
 pub mod progress;
-pub mod range;
 #[cfg(feature = "serde")]
 pub mod sealed;
 pub mod sheet;
 pub mod stack;
 pub mod sweep;
-pub mod tile;
 
 pub use chart::Chart;
-pub use family::{CollisionFamily, CollisionFamilyError, CollisionPlane};
+pub use chart::Range;
+pub use family::{CollisionFamily, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
 pub use label::{CollisionEvent, CollisionLabel};
 pub use oblique::Oblique;
-pub use range::Range;
 pub use sheet::Sheet;
-pub use tile::Tile;
+pub use sweep::Tile;
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

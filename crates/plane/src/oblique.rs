@@ -26,7 +26,6 @@ impl Oblique {
     }
 
     /// κ at normal incidence.
-    #[must_use]
     pub fn kappa(&self) -> f64 {
         self.kappa
     }
@@ -36,13 +35,11 @@ impl Oblique {
     }
 
     /// ψ of an angle in rad.
-    #[must_use]
     pub fn psi(&self, angle_rad: f64) -> f64 {
         self.reduction().psi(angle_rad.tan())
     }
 
     /// The angle of ψ in rad.
-    #[must_use]
     pub fn angle_rad(&self, psi: f64) -> f64 {
         self.reduction().ratio(psi).atan()
     }

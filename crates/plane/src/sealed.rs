@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
+use stickslip_model::InvalidValue;
 use twox_hash::XxHash3_128;
 
 /// The field with the digests of the others.
@@ -21,17 +22,6 @@ struct Sealed<'a, D> {
     digests: BTreeMap<String, String>,
 }
 
-/// A document is another one than was written.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{field} has changed since the file was written; expected the file as it was, or, if it was \
-     changed on purpose, without the field digests"
-)]
-pub struct Damaged {
-    /// The first field that has changed.
-    pub field: String,
-}
-
 /// A document as JSON on one line, with digests.
 ///
 /// ```
@@ -42,7 +32,7 @@ pub struct Damaged {
 /// assert_eq!(sealed::check(text.as_bytes()), Ok(()));
 /// assert_eq!(sealed::check(text.replace("0.5", "0.50 ").as_bytes()), Ok(()));
 /// let damaged = sealed::check(text.replace("0.5", "0.6").as_bytes()).unwrap_err();
-/// assert_eq!(damaged.field, "psi");
+/// assert_eq!(damaged.name, "psi");
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 ///
@@ -57,22 +47,27 @@ pub fn to_string(document: &impl Serialize) -> serde_json::Result<String> {
 /// reader, who says where it is wrong.
 ///
 /// # Errors
-/// [`Damaged`] names the first field that does not fit.
-pub fn check(text: &[u8]) -> Result<(), Damaged> {
+/// [`InvalidValue`] names the first field that does not fit.
+pub fn check(text: &[u8]) -> Result<(), InvalidValue> {
     let Ok(mut fields) = serde_json::from_slice::<Map<String, Value>>(text) else { return Ok(()) };
     let Some(digests) = fields.remove(DIGESTS) else {
         // Digests under another name: it is their name that was changed.
         let renamed = fields.into_iter().find(|(_, value)| has_digests(value));
-        return renamed.map_or(Ok(()), |(field, _)| Err(Damaged { field }));
+        return renamed.map_or(Ok(()), |(field, _)| Err(damaged(field)));
     };
     let (written, found) = (serde_json::from_value(digests), digests_of(&fields));
-    let written: BTreeMap<String, String> =
-        written.map_err(|_| Damaged { field: DIGESTS.to_owned() })?;
+    let written: BTreeMap<String, String> = written.map_err(|_| damaged(DIGESTS.to_owned()))?;
     let mut names = found.keys().chain(written.keys());
     match names.find(|name| found.get(*name) != written.get(*name)) {
-        Some(field) => Err(Damaged { field: field.clone() }),
+        Some(field) => Err(damaged(field.clone())),
         None => Ok(()),
     }
+}
+
+fn damaged(field: String) -> InvalidValue {
+    let expected =
+        "the file as it was, or, if it was changed on purpose, without the field digests";
+    InvalidValue::phrase(field, "has changed since the file was written", expected)
 }
 
 /// Whether a value is an object with a digest.

@@ -3,7 +3,7 @@
 use stickslip_tracer::{Node, Point, Window};
 
 use crate::chart::Chart;
-use crate::range::Range;
+use crate::chart::Range;
 
 /// A window of two parameters above 0, and its chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,6 @@ const NARROWEST: f64 = 2e-7;
 
 impl Sheet {
     /// The window in traced coordinates.
-    #[must_use]
     pub fn window(&self) -> Window {
         let [x, y] = self.sides;
         self.chart.window(x, y)
@@ -76,7 +75,6 @@ impl Sheet {
 
     /// The distance in traced coordinates between a boundary and a curve that is accurate to
     /// `tolerance` in the second parameter.
-    #[must_use]
     pub fn interpolation(&self, tolerance: f64) -> f64 {
         // The finest tolerance may be lost by rounding.
         (tolerance / self.chart.scale(self.sides[1].high)).max(FINEST)
@@ -84,7 +82,6 @@ impl Sheet {
 
     /// The distance from a curve within which the side of a point is left open. It is ten times the
     /// curve's error, and at least 1e-9, since vertices are known less well.
-    #[must_use]
     pub fn resolution(&self, tolerance: f64) -> f64 {
         let [one, other] = self.errors();
         (10.0 * self.interpolation(tolerance)).max(1e3 * one.max(other)).max(1e-9)
@@ -95,7 +92,6 @@ impl Sheet {
     /// Margins leave the logarithms of both parameters open to 1e-13. In a window that is narrow in
     /// one of them, this is a large part of that side. It moves a boundary that runs along the
     /// side, but not one that runs across it.
-    #[must_use]
     pub fn resolution_of<'n>(&self, nodes: impl Iterator<Item = &'n Node>, tolerance: f64) -> f64 {
         let [along, across] = self.errors();
         let moved =
@@ -105,7 +101,6 @@ impl Sheet {
     }
 
     /// The accuracies that boundaries can have.
-    #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
         let shorter = self.window().extent().min().min(1.0);
         let finest = FINEST.max(10.0 * self.noise());
@@ -135,7 +130,6 @@ impl Sheet {
 
     /// Both parameters of a traced point, moved onto an edge of the window if they differ from the
     /// edge by rounding alone.
-    #[must_use]
     pub fn snapped(&self, point: &Point) -> [f64; 2] {
         let snap = |value: f64, Range { low, high }: Range| {
             let near = |edge: &f64| (value - edge).abs() <= 1e-14 * edge;

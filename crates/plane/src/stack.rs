@@ -1,22 +1,23 @@
 //! Atlases over the damping, and where their regions are born, merge, split and die.
 //!
-//! Start reading in [`stack()`](fn@stack). `document` is the file of a stack.
+//! Start reading in [`stack()`](fn@stack).
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stickslip_model::InvalidValue;
-use stickslip_tracer::{AtlasOptions, Change, Stack, StackError, StackOptions, Watch};
+use stickslip_tracer::{AtlasOptions, Change, Stack, StackOptions, TraceError, Watch};
+#[cfg(feature = "serde")]
+use stickslip_tracer::{Effect, Meeting};
 
 use crate::atlas::{self, Atlas, AtlasError, Frame, itinerary};
 use crate::family::CollisionPlane;
 use crate::label::CollisionLabel;
 use crate::progress::{InParallel, Progress, Report, SILENT};
 
+/// The name of the layout of its file, with its version.
 #[cfg(feature = "serde")]
-mod document;
-#[cfg(feature = "serde")]
-pub use document::{ChangeFields, EffectFields, LayerFields, MeetingFields, SCHEMA, StackDocument};
+pub const SCHEMA: &str = "stickslip.stack/1";
 
 /// The atlases of a window at several dampings, and what changes between them.
 #[derive(Clone, Debug)]
@@ -44,28 +45,6 @@ pub struct DampingLayer {
     pub as_stacked: Option<bool>,
 }
 
-/// Why there is no stack.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DampingStackError {
-    /// The dampings are not possible.
-    #[error(
-        "{dampings:?}; expected two dampings above 0 or more, in ascending order, and 0 before \
-         them or not"
-    )]
-    Dampings {
-        /// The dampings.
-        dampings: Vec<f64>,
-    },
-    /// An atlas failed.
-    #[error("damping = {damping:?}: {source}")]
-    Atlas {
-        /// The damping.
-        damping: f64,
-        /// The error of the atlas.
-        source: AtlasError,
-    },
-}
-
 /// The atlases of `frame` at `dampings`, which ascend, with boundaries accurate to `tolerance` in
 /// ψ, and what changes between them. The first damping may be 0: at every damping above it a
 /// contact begins in stick, so that all regions are others, and nothing is followed from there.
@@ -76,14 +55,14 @@ pub enum DampingStackError {
 ///
 /// ```
 /// use stickslip_plane::atlas::Frame;
-/// use stickslip_plane::{Range, progress, stack};
+/// use stickslip_plane::{Range, atlas, progress, stack};
 ///
 /// let frame = Frame::new(Range { low: 5.0, high: 20.0 }, Range { low: 0.2, high: 2.5 }, 0.0);
 /// let tolerance = frame.tolerances().usual;
 /// let stack = stack::stack(frame, &[0.05, 0.2], tolerance, progress::SILENT)?;
 /// assert!(stack.layers.iter().all(|layer| layer.as_stacked == Some(true)));
 /// assert!(stack.changes.iter().all(|change| !change.is_doubtful()));
-/// # Ok::<(), stack::DampingStackError>(())
+/// # Ok::<(), atlas::AtlasError>(())
 /// ```
 ///
 /// # Errors
@@ -93,7 +72,7 @@ pub fn stack(
     dampings: &[f64],
     tolerance: f64,
     progress: Report<'_>,
-) -> Result<DampingStack, DampingStackError> {
+) -> Result<DampingStack, AtlasError> {
     let damped = damped(dampings)?;
     let undamped = dampings.len() - damped.len();
     let at = |damping: f64| Frame { damping, ..frame };
@@ -101,8 +80,8 @@ pub fn stack(
     let layer = |&damping: &f64| {
         let made = atlas::trace(at(damping), tolerance, SILENT);
         progress(Progress::Advance { steps: 1 });
-        let atlas = made.map_err(|source| DampingStackError::Atlas { damping, source })?;
-        Ok(DampingLayer { damping, atlas, as_stacked: None })
+        let layer = |atlas| DampingLayer { damping, atlas, as_stacked: None };
+        made.map(layer).map_err(|source| at_damping(damping, source))
     };
     let (layers, followed) = rayon::join(
         || dampings.par_iter().map(layer).collect::<Result<Vec<_>, _>>(),
@@ -118,15 +97,20 @@ pub fn stack(
 /// The dampings above 0, if `dampings` are those of a stack.
 ///
 /// # Errors
-/// [`DampingStackError::Dampings`]: they do not ascend, or fewer than two are above 0.
-pub fn damped(dampings: &[f64]) -> Result<&[f64], DampingStackError> {
+/// [`AtlasError::Dampings`]: they do not ascend, or fewer than two are above 0.
+pub fn damped(dampings: &[f64]) -> Result<&[f64], AtlasError> {
     let damped = &dampings[usize::from(dampings.first() == Some(&0.0))..];
     let ascend = dampings.windows(2).all(|pair| pair[0] < pair[1]);
     if damped.len() >= 2 && ascend && damped.iter().all(|&damping| damping > 0.0) {
         Ok(damped)
     } else {
-        Err(DampingStackError::Dampings { dampings: dampings.to_vec() })
+        Err(AtlasError::Dampings { dampings: dampings.to_vec() })
     }
+}
+
+/// The error of an atlas at a damping.
+fn at_damping(damping: f64, source: AtlasError) -> AtlasError {
+    AtlasError::Layer { damping, source: Box::new(source) }
 }
 
 /// What the search for changes finds.
@@ -144,15 +128,15 @@ fn follow(
     dampings: &[f64],
     tolerance: f64,
     progress: Report<'_>,
-) -> Result<Followed, DampingStackError> {
+) -> Result<Followed, AtlasError> {
     let first = dampings[0];
-    let failed = |damping, source| DampingStackError::Atlas { damping, source };
-    let plane =
-        |damping| at(damping).plane().map_err(|error: InvalidValue| failed(damping, error.into()));
+    let plane = |damping| {
+        at(damping).plane().map_err(|error: InvalidValue| at_damping(damping, error.into()))
+    };
     let sample = plane(first)?;
     for &damping in dampings {
         atlas::require_traceable(&plane(damping)?, tolerance)
-            .map_err(|source| failed(damping, source))?;
+            .map_err(|source| at_damping(damping, source))?;
     }
     // Between two possible dampings all are possible.
     let family = |damping: f64| plane(damping).unwrap_or(sample).family();
@@ -167,10 +151,8 @@ fn follow(
     let (window, watch) = (sample.window(), Watch::from(progress));
     let made = Stack::watched(family, &window, dampings, &options, InParallel, watch);
     let stack = made.map_err(|error| match error {
-        StackError::Atlas { value, source } => failed(value, AtlasError::of_atlas(&sample, source)),
-        StackError::Values | StackError::Width(_) => {
-            DampingStackError::Dampings { dampings: dampings.to_vec() }
-        }
+        TraceError::Layer { value, source } => at_damping(value, AtlasError::of(&sample, *source)),
+        _ => AtlasError::Dampings { dampings: dampings.to_vec() },
     })?;
     let any = sample.contact_or_any(&sample.window().low);
     let text = |label: &CollisionLabel| itinerary(&any, label);
@@ -195,7 +177,6 @@ fn itineraries(atlas: &Atlas) -> Vec<String> {
 
 impl DampingLayer {
     /// The numbers of regions with each itinerary.
-    #[must_use]
     pub fn region_counts(&self) -> BTreeMap<String, usize> {
         let mut counts = BTreeMap::new();
         for itinerary in itineraries(&self.atlas) {
@@ -208,7 +189,6 @@ impl DampingLayer {
 impl DampingStack {
     /// Why something in the stack may be wrong: the first atlas against which something speaks or
     /// which does not fit the changes, or the first change in doubt.
-    #[must_use]
     pub fn objection(&self) -> Option<String> {
         for layer in &self.layers {
             let at = format!("damping = {:?}", layer.damping);
@@ -225,5 +205,50 @@ impl DampingStack {
             }
         }
         self.changes.iter().find_map(|change| change.objection("dampings"))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl DampingStack {
+    /// The stack in the layout of its file, [`SCHEMA`]. Without damping, and inside the bracket of
+    /// a change, `as_stacked` is `null`.
+    pub fn document(&self) -> serde_json::Value {
+        use serde_json::json;
+
+        let layer = |layer: &DampingLayer| {
+            json!({
+                "damping": layer.damping,
+                "boundaries": layer.atlas.regions.curves().len(),
+                "vertices": layer.atlas.regions.vertices().len(),
+                "regions": layer.region_counts(),
+                "agrees": layer.atlas.report.agrees,
+                "as_stacked": layer.as_stacked,
+            })
+        };
+        let meeting = |meeting: Meeting| {
+            let [kappa, psi] = self.plane.sheet().snapped(&meeting.point);
+            let kind = meeting.kind.name();
+            json!({ "kind": kind, "damping": meeting.value, "kappa": kappa, "psi": psi })
+        };
+        let effect = |effect: &Effect<String>| json!({ "effect": effect.name(), "itinerary": effect.label() });
+        let change = |change: &Change<String>| {
+            json!({
+                "between": change.between,
+                "meeting": change.meeting.map(meeting),
+                "doubtful": change.is_doubtful(),
+                "effects": change.effects.iter().map(effect).collect::<Vec<_>>(),
+            })
+        };
+        let [kappa, psi] = self.plane.sheet().sides;
+        json!({
+            "schema": SCHEMA,
+            "kappa": [kappa.low, kappa.high],
+            "psi": [psi.low, psi.high],
+            "tolerance": self.layers.first().map_or(0.0, |layer| layer.atlas.tolerance),
+            "atlases": self.atlases,
+            "agrees": self.objection().is_none(),
+            "layers": self.layers.iter().map(layer).collect::<Vec<_>>(),
+            "changes": self.changes.iter().map(change).collect::<Vec<_>>(),
+        })
     }
 }

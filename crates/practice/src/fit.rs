@@ -39,28 +39,26 @@ mod search;
 mod settings;
 mod survey;
 
-use stickslip_model::restitution::RestitutionError;
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{CollisionFailure, InvalidValue, Law};
+use stickslip_model::{CollisionError, CollisionFailure, InvalidValue, Law};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::progress::Report;
 
-pub use bodies::{Bodies, Values};
-pub use columns::{Column, InvalidColumns, data};
-pub use course::{Boundary, Course, Curve};
+pub use bodies::{FittedBodies, Values};
+pub use columns::{MeasuredColumn, data};
+pub use course::{Boundary, FittedCourse, FittedCurve};
 pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
-pub use intervals::{Interval, Piece};
+pub use intervals::{ConfidenceInterval, IntervalPiece};
 pub use normal::DampingFit;
-pub use settings::Settings;
+pub use settings::FitSettings;
 pub use survey::Survey;
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.fit/1";
 
 /// A fit.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Fit {
     /// [`SCHEMA`].
     pub schema: &'static str,
@@ -93,22 +91,21 @@ pub struct Fit {
     /// All minima, the best one first.
     pub minima: Vec<Minimum>,
     /// The intervals of all free numbers.
-    pub intervals: Vec<Interval>,
+    pub intervals: Vec<ConfidenceInterval>,
     /// The best fit with Mindlin's stiffness of the materials.
     pub mindlin: Option<Mindlin>,
     /// What is left of each datum at the best minimum.
     pub residuals: Vec<Residual>,
     /// The best fit at all angles. `None` where nothing was measured at an angle, and where only a
     /// [`Survey`] was made.
-    pub course: Option<Course>,
+    pub course: Option<FittedCourse>,
 }
 
 /// A minimum of the misfit.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Minimum {
     /// Where it is.
-    #[cfg_attr(feature = "serde", serde(flatten))]
+    #[serde(flatten)]
     pub values: Values,
     /// The tangential stiffness: k_t in kg/s² where it is constant, K in kg/(s² √m) where it is
     /// Mindlin's. `None` in scaled units.
@@ -123,8 +120,7 @@ pub struct Minimum {
 }
 
 /// The root mean square of the residuals of one quantity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct RootMeanSquare {
     /// The quantity.
     pub quantity: Measured,
@@ -135,11 +131,10 @@ pub struct RootMeanSquare {
 }
 
 /// A datum and what the model says of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Residual {
     /// The datum.
-    #[cfg_attr(feature = "serde", serde(flatten))]
+    #[serde(flatten)]
     pub datum: Datum,
     /// What the model says.
     pub predicted: f64,
@@ -148,8 +143,7 @@ pub struct Residual {
 }
 
 /// The best fit with the tangential stiffness that Mindlin's theory gives the materials.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Mindlin {
     /// The best fit.
     pub best: Minimum,
@@ -166,18 +160,18 @@ pub struct Mindlin {
 /// ```
 /// use stickslip_model::Law;
 /// use stickslip_plane::{Range, progress};
-/// use stickslip_practice::fit::{self, Bodies, Datum, Measured, Settings, Values};
+/// use stickslip_practice::fit::{self, FittedBodies, Datum, Measured, FitSettings, Values};
 ///
 /// // What would be measured of homogeneous spheres with κ = 5 and μ = 0.1.
 /// let values = Values { kappa: 5.0, mu: 0.1, tangential_damping: 0.0, damping: 0.0 };
-/// let bodies = Bodies::scaled(Law::PAPER, 2.0 / 7.0, &values)?;
+/// let bodies = FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &values)?;
 /// let angles = [5.0_f64, 10.0, 20.0, 30.0, 45.0, 60.0].map(f64::to_radians);
 /// let predicted = fit::predicted(&bodies, 1.0, Measured::CentreRestitution, &angles)?;
 /// let data = angles.iter().zip(&predicted).map(|(angle, e_t)| {
 ///     Datum::at_angle(*angle, 1.0, Measured::CentreRestitution, *e_t, Some(0.01))
 /// });
 ///
-/// let mut settings = Settings::new(bodies, data.collect());
+/// let mut settings = FitSettings::new(bodies, data.collect());
 /// settings.ranges.kappa = Range { low: 1.0, high: 20.0 };
 /// let found = fit::run(&settings, progress::SILENT)?;
 /// let best = &found.minima[0].values;
@@ -188,7 +182,7 @@ pub struct Mindlin {
 ///
 /// # Errors
 /// [`FitError`]: the settings are out of range, or an impact cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Fit, FitError> {
+pub fn run(settings: &FitSettings, progress: Report<'_>) -> Result<Fit, FitError> {
     let survey = Survey::new(settings, progress)?;
     survey.with_course(survey.fit()?)
 }
@@ -199,7 +193,7 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Fit, FitError> {
 /// # Errors
 /// [`FitError`]: an impact cannot be computed.
 pub fn predicted(
-    bodies: &Bodies,
+    bodies: &FittedBodies,
     speed_m_per_s: f64,
     quantity: Measured,
     angles_rad: &[f64],
@@ -215,7 +209,7 @@ impl Fit {
     ///
     /// # Errors
     /// [`FitError`]: they have no impact at the speed of the fit.
-    pub fn best_pair(&self, bodies: &Bodies) -> Result<Option<BodyPair>, FitError> {
+    pub fn best_pair(&self, bodies: &FittedBodies) -> Result<Option<BodyPair>, FitError> {
         let (Some(speed), Some(best)) = (self.speed_m_per_s, self.minima.first()) else {
             return Ok(None);
         };
@@ -227,108 +221,9 @@ impl Fit {
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// A setting or a datum is out of range, or an impact has no scaled parameters.
+    /// Settings or data cannot be used, or an impact has no scaled parameters.
     #[error(transparent)]
     Value(#[from] InvalidValue),
-    /// There are no data, or too many.
-    #[error("{count} data; expected 1 to {}", Settings::MOST_DATA)]
-    Count {
-        /// The number of data.
-        count: usize,
-    },
-    /// Some data have errors, but not all.
-    #[error("row {row}: {name} has no error, and others have one; expected all errors, or none")]
-    NoError {
-        /// The row of a datum without error.
-        row: usize,
-        /// The name of the quantity.
-        name: &'static str,
-    },
-    /// Several quantities are fitted together without errors.
-    #[error(
-        "{first} and {second} have no errors; expected errors, which weigh one quantity against the \
-         other, or one quantity"
-    )]
-    Weights {
-        /// The name of a quantity.
-        first: &'static str,
-        /// The name of another one.
-        second: &'static str,
-    },
-    /// There are fewer data than numbers to be fitted.
-    #[error(
-        "{data} data {} for {free} free numbers; expected at least as many data",
-        if *normal { "of eps_n" } else { "of the tangential motion" }
-    )]
-    TooFew {
-        /// The number of data.
-        data: usize,
-        /// The number of free numbers.
-        free: usize,
-        /// Whether these are data of ε_n.
-        normal: bool,
-    },
-    /// Nothing is fitted, or too much.
-    #[error(
-        "{count} free numbers besides the damping; expected 1 or 2 of kappa (or k_t), mu and \
-         tangential_damping, or damping"
-    )]
-    Free {
-        /// How many there are besides the damping.
-        count: usize,
-    },
-    /// A number is to be fitted twice.
-    #[error("{name} is free twice; expected different names")]
-    Twice {
-        /// The name.
-        name: &'static str,
-    },
-    /// A range is not an interval, or out of range.
-    #[error(
-        "the range {low:?} to {high:?} of {name} cannot be used; expected two rising numbers {} 0, \
-         at most {most:?}",
-        if *open { "above" } else { "from" }
-    )]
-    Range {
-        /// The name of the number.
-        name: &'static str,
-        /// Its lower end.
-        low: f64,
-        /// Its upper end.
-        high: f64,
-        /// The largest upper end.
-        most: f64,
-        /// Whether 0 is left out.
-        open: bool,
-    },
-    /// A damping is free where nothing is damped.
-    #[error(
-        "{name} is free, but has no effect without damping; expected a law with damping, and eps_n below 1"
-    )]
-    Undamped {
-        /// The name.
-        name: &'static str,
-    },
-    /// The stiffness of a spring that is not there is free.
-    #[error("{name} is free, but the law has no spring; expected other free numbers")]
-    NoSpring {
-        /// The name.
-        name: &'static str,
-    },
-    /// The range of the damping has contacts that never end.
-    #[error("damping up to {high:?} has contacts that never end; expected a range below {most:?}")]
-    Endless {
-        /// The upper end of the range.
-        high: f64,
-        /// Where contacts stop to end.
-        most: f64,
-    },
-    /// The damping is both given and fitted.
-    #[error("eps_n = {value:?} decides the damping, which is free; expected one of the two")]
-    DampingTwice {
-        /// ε_n.
-        value: f64,
-    },
     /// An impact cannot be computed.
     #[error(transparent)]
     Contact(#[from] CollisionFailure),
@@ -337,7 +232,7 @@ pub enum FitError {
     Boundaries(#[from] Box<AtlasError>),
     /// No damping has a given ε_n, or it cannot be found.
     #[error(transparent)]
-    Restitution(#[from] RestitutionError),
+    Restitution(#[from] CollisionError),
     /// A search has no places to start from.
     #[error("a search has no places to start from")]
     NoPlaces,

@@ -24,23 +24,12 @@ pub enum Code {
     Mercury,
 }
 
-/// Why a code cannot compute the contacts of two bodies.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{code} has no input for these contacts: {reason}")]
-pub struct NoInput {
-    /// The code.
-    pub code: &'static str,
-    /// What it does not have, and what is expected.
-    pub reason: String,
-}
-
 impl Code {
     /// All of them.
     pub const ALL: [Self; 5] =
         [Self::Lammps, Self::Liggghts, Self::Yade, Self::Mfix, Self::Mercury];
 
     /// The name: `lammps`, `liggghts`, `yade`, `mfix` or `mercury`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Lammps => "lammps",
@@ -52,7 +41,6 @@ impl Code {
     }
 
     /// The code with this name.
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|code| code.name() == name)
     }
@@ -87,8 +75,8 @@ impl Code {
 /// ```
 ///
 /// # Errors
-/// [`NoInput`]: the code does not have the law, or not with these constants.
-pub fn lines(code: Code, pair: &BodyPair) -> Result<String, NoInput> {
+/// A sentence: the code does not have the law, or not with these constants.
+pub fn lines(code: Code, pair: &BodyPair) -> Text {
     let constants = Constants::new(pair);
     let text = match code {
         Code::Lammps => constants.lammps(),
@@ -97,7 +85,7 @@ pub fn lines(code: Code, pair: &BodyPair) -> Result<String, NoInput> {
         Code::Mfix => constants.mfix(),
         Code::Mercury => constants.mercury(),
     };
-    text.map_err(|reason| NoInput { code: code.name(), reason })
+    text.map_err(|reason| format!("{} has no input for these contacts: {reason}", code.name()))
 }
 
 /// The constants of a pair as codes have them.

@@ -17,14 +17,14 @@
 //! ```
 //! use stickslip_model::{Contact, presets};
 //! use stickslip_plane::progress;
-//! use stickslip_practice::time_steps::{self, Quantity, Settings};
+//! use stickslip_practice::time_steps::{self, SteppedQuantity, TimeStepSettings};
 //!
 //! let law = presets::find("gran/hertz/history").ok_or("no such law")?.law;
 //! let contact = Contact::new(4.0, 0.5, 0.1)?.with_law(law, 0.0)?;
-//! let settings = Settings { contacts: vec![contact], ..Settings::default() };
+//! let settings = TimeStepSettings { contacts: vec![contact], ..TimeStepSettings::default() };
 //! let result = time_steps::run(&settings, progress::SILENT)?;
 //! // Twenty steps a contact are few enough for errors of ε_t below 0.02 in this impact.
-//! let largest = result.largest_step(Quantity::TangentialRestitution, 0.02);
+//! let largest = result.largest_step(SteppedQuantity::TangentialRestitution, 0.02);
 //! assert_eq!(largest, Some(1.0 / 20.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -10,17 +10,17 @@
 //! ```
 //! use stickslip_model::spheres::{BodyPair, Material, Surface};
 //! use stickslip_plane::{Range, progress};
-//! use stickslip_practice::tables::{self, Settings, Window};
+//! use stickslip_practice::tables::{self, TableSettings, TableWindow};
 //!
 //! let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
 //! let surface =
 //!     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
-//! let window = Window::Velocities {
+//! let window = TableWindow::Velocities {
 //!     pair: BodyPair::equal_spheres(0.02, &steel, &surface)?,
 //!     normal_m_per_s: Range { low: 1.0, high: 2.0 },
 //!     tangential_m_per_s: Range { low: 1.0, high: 3.0 },
 //! };
-//! let settings = Settings { window, bound: 1e-5, regions: false };
+//! let settings = TableSettings { window, bound: 1e-5, regions: false };
 //! let table = tables::run(&settings, progress::SILENT)?;
 //! // Faster impacts lose more of their normal velocity.
 //! assert!(table.eps_n(2.0) < table.eps_n(1.0) && table.eps_t(1.5, 2.0) < 1.0);
@@ -28,25 +28,21 @@
 //! ```
 //!
 //! Start reading here; then, in this order: `settings`, `boundaries` and `chain` (boundaries as
-//! graphs over x), `turns` (where they turn back), `stretch` (coordinates in which roots are
-//! smooth), `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up),
-//! `verification`.
+//! graphs over x, and where they turn back), `stretch` (coordinates in which roots are smooth),
+//! `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up), `verification`.
 
 mod assembly;
 mod boundaries;
 mod chain;
 mod chebyshev;
-#[cfg(feature = "serde")]
 mod document;
 mod header;
 mod hints;
-mod keys;
 mod settings;
 mod slab;
 mod stretch;
 mod strip;
 mod table;
-mod turns;
 mod verification;
 
 use std::fmt;
@@ -57,20 +53,19 @@ use stickslip_plane::atlas::{AtlasError, divide};
 use stickslip_plane::progress::{Progress, Report, SILENT};
 
 pub use chebyshev::{ACROSS, ALONG};
-#[cfg(feature = "serde")]
-pub use document::{Document, SCHEMA};
+pub use document::{SCHEMA, TableDocument};
 pub use header::require_prefix;
-pub use keys::Keys;
-pub use settings::{Settings, Window};
+pub use hints::Keys;
+pub use settings::{TableSettings, TableWindow};
 pub use stretch::Stretch;
-pub use table::{Arrays, NO_REGION, Table, Verification};
+pub use table::{Arrays, NO_REGION, Table, TableVerification};
 
 /// Makes a table of ε_t and ε_n and verifies it, on the threads of the current rayon pool.
 ///
 /// # Errors
 /// [`TableError`]: the settings are out of range, the boundaries cannot be traced or something
 /// speaks against them, a collision cannot be computed, or the bound is not reached.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Table, TableError> {
+pub fn run(settings: &TableSettings, progress: Report<'_>) -> Result<Table, TableError> {
     settings.validate()?;
     let plane = settings.window.plane()?;
     let division = divide(&plane, plane.sheet().tolerances().usual, SILENT)?;
@@ -81,11 +76,11 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Table, TableErro
     let done = || progress(Progress::Advance { steps: 1 });
     let arrays = assembly::arrays(settings, &division, begin, done)?;
     let constant_eps_n = match settings.window {
-        Window::Scaled { .. } => {
+        TableWindow::Scaled { .. } => {
             let mut collision = Collision::before(Contact::new(1.0, 1.0, 0.0)?);
             Some(strip::restitution(&plane, plane.corners()[0], &mut collision)?[1])
         }
-        Window::Velocities { .. } => None,
+        TableWindow::Velocities { .. } => None,
     };
     let regions = 0..division.regions.regions().len();
     let named = regions.map(|region| division.itinerary(region).to_owned());
@@ -93,15 +88,18 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Table, TableErro
         window: settings.window,
         constant_eps_n,
         bound: settings.bound,
-        verification: Verification::NONE,
+        verification: TableVerification::NONE,
         regions: if settings.regions { named.collect() } else { Vec::new() },
         sides: settings.window.sides(),
         arrays,
     };
     table.verification = verification::verify(&table, &plane)?;
-    let Verification { largest_error, largest_error_of_eps_n, x, y, .. } = table.verification;
+    let TableVerification { largest_error, largest_error_of_eps_n, x, y, .. } = table.verification;
     if !strip::within(largest_error, settings.bound) {
-        return Err(TableError::Coarse { place: Place::of(&plane, [x, y]), error: largest_error });
+        return Err(TableError::Coarse {
+            place: TablePlace::of(&plane, [x, y]),
+            error: largest_error,
+        });
     }
     if !strip::within(largest_error_of_eps_n, settings.bound) {
         return Err(TableError::CoarseNormal { error: largest_error_of_eps_n });
@@ -111,20 +109,20 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Table, TableErro
 
 /// A place of a window, shown as the names of both axes with their values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct TablePlace {
     /// The names of the axes.
     pub names: [&'static str; 2],
     /// The values.
     pub at: [f64; 2],
 }
 
-impl Place {
+impl TablePlace {
     fn of(plane: &CollisionPlane, at: [f64; 2]) -> Self {
         Self { names: plane.names(), at }
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for TablePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { names: [x, y], at } = self;
         write!(f, "{x} = {:?}, {y} = {:?}", at[0], at[1])
@@ -153,7 +151,7 @@ pub enum TableError {
     #[error("{place}: {source}")]
     Engine {
         /// The place of the collision.
-        place: Place,
+        place: TablePlace,
         /// What the engine reports.
         source: CollisionError,
     },
@@ -161,7 +159,7 @@ pub enum TableError {
     #[error("the bound is not reached: the error is {error:e} at {place}")]
     Coarse {
         /// The place.
-        place: Place,
+        place: TablePlace,
         /// The error there.
         error: f64,
     },

@@ -6,7 +6,7 @@
 //! difference in ε_t, in ε_n and in the energy after the contact. Steps are given as numbers t_c/dt
 //! of steps in the undamped contact time t_c ([`undamped_contact_time`]).
 //!
-//! Start reading here; then, in this order: `scheme` (what codes do in a step), `stepped` (one
+//! Start reading here; then, in this order: `stepped` (what codes do in a step, and one
 //! collision in steps), `settings`, `measure` (errors over impacts and start phases),
 //! `seconds` (times in SI units).
 //!
@@ -19,7 +19,6 @@
 //! point.
 
 mod measure;
-mod scheme;
 mod seconds;
 mod settings;
 mod stepped;
@@ -28,18 +27,17 @@ use rayon::prelude::*;
 use stickslip_model::{Collision, CollisionError, CollisionFailure, Contact, Engine, InvalidValue};
 use stickslip_plane::progress::{Progress, Report};
 
-pub use measure::{Errors, Quantity, Row, Status, Worst};
-pub use scheme::Scheme;
+pub use measure::{Status, SteppedQuantity, TimeStepErrors, TimeStepRow, Worst};
 pub use seconds::{Seconds, rayleigh_time_s};
-pub use settings::Settings;
+pub use settings::TimeStepSettings;
+pub use stepped::Scheme;
 pub use stepped::{Stepped, step, undamped_contact_time};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.timestep/1";
 
 /// The errors of time steps.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct TimeSteps {
     /// [`SCHEMA`].
     pub schema: &'static str,
@@ -52,7 +50,7 @@ pub struct TimeSteps {
     /// The impacts.
     pub contacts: Vec<Contact>,
     /// The errors for each time step, from the longest to the shortest.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TimeStepRow>,
 }
 
 /// Measures the errors of all time steps, on the threads of the current pool.
@@ -64,7 +62,7 @@ pub struct TimeSteps {
 /// # Errors
 /// [`TimeStepsError`]: the settings are out of range, or an impact cannot be computed without
 /// steps.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<TimeSteps, TimeStepsError> {
+pub fn run(settings: &TimeStepSettings, progress: Report<'_>) -> Result<TimeSteps, TimeStepsError> {
     settings.validate()?;
     let mut steps = settings.steps_per_contact.clone();
     steps.sort_by(f64::total_cmp);
@@ -81,7 +79,8 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<TimeSteps, TimeS
     });
     let exact: Vec<Collision> = exact.collect::<Result<_, _>>()?;
     let done = || progress(Progress::Advance { steps: 1 });
-    let rows = steps.iter().map(|steps| Row::measure(settings, *steps, &exact, done)).collect();
+    let rows =
+        steps.iter().map(|steps| TimeStepRow::measure(settings, *steps, &exact, done)).collect();
     Ok(TimeSteps {
         schema: SCHEMA,
         scheme: settings.scheme,
@@ -100,9 +99,8 @@ impl TimeSteps {
     ///
     /// Errors do not fall evenly with the step. Nothing is promised of steps that were not
     /// measured, between those that were or below them, nor of other impacts and phases.
-    #[must_use]
-    pub fn largest_step(&self, quantity: Quantity, wanted: f64) -> Option<f64> {
-        let holds = |row: &&Row| {
+    pub fn largest_step(&self, quantity: SteppedQuantity, wanted: f64) -> Option<f64> {
+        let holds = |row: &&TimeStepRow| {
             let error = row.errors(quantity).map(|errors| errors.worst.error);
             row.status == Status::Ok && error.is_some_and(|error| error <= wanted)
         };

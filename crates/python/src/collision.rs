@@ -95,7 +95,7 @@ impl Collision {
     fn sensitivity(&self, py: Python<'_>) -> PyResult<Vec<[f64; 4]>> {
         let contact = self.result.contact;
         let found =
-            py.detach(|| Collider::default().sensitivity(contact)).map_err(Failure::Engine)?;
+            py.detach(|| Collider::default().sensitivity(contact)).map_err(Failure::from)?;
         let rows = [found.eps_n, found.eps_t, found.final_velocity, found.contact_time];
         Ok(rows.iter().chain(&found.switch_times).map(derivatives).collect())
     }

@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use pyo3::prelude::*;
 use serde_json::Value;
-use stickslip_model::{Engine, InvalidChoice, Law, presets};
+use stickslip_model::{Engine, Law, presets};
 use stickslip_solver::Statistics;
 
 use crate::failure::{bad_input, failed};
@@ -19,15 +19,7 @@ impl Choice {
     /// of the program's options.
     pub fn engine(&self, law: (Law, f64)) -> PyResult<Engine> {
         let Self(method, rtol, atol) = self;
-        Engine::chosen_for(law, method, *rtol, *atol).map_err(|invalid| {
-            bad_input(match invalid {
-                InvalidChoice::Unused { name, value } => format!(
-                    "{name} = {value:?} has no effect with method = \"exact\"; expected with \
-                     \"dop853\" and \"dopri5\" only"
-                ),
-                InvalidChoice::Value(error) => error.to_string(),
-            })
-        })
+        Engine::chosen_for(law, method, *rtol, *atol).map_err(bad_input)
     }
 }
 

@@ -4,7 +4,6 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use stickslip_model::exact::ExactError;
-use stickslip_model::spheres::EncounterError;
 use stickslip_model::{CollisionError, CollisionFailure, InvalidValue};
 use stickslip_plane::atlas::AtlasError;
 
@@ -27,35 +26,22 @@ pub fn failed(error: impl ToString) -> PyErr {
 
 /// The reason why a contact has no result.
 #[derive(Clone)]
-pub enum Failure {
-    /// No collision has these parameters.
-    Parameter(InvalidValue),
-    /// No impact is like this.
-    Encounter(EncounterError),
-    /// The engine has no result.
-    Engine(CollisionError),
-}
+pub struct Failure(pub CollisionError);
 
 impl Failure {
     /// Whether a parameter is out of range, and nothing was computed.
     fn is_bad_input(&self) -> bool {
         matches!(
-            self,
-            Self::Parameter(_)
-                | Self::Encounter(_)
-                | Self::Engine(
-                    CollisionError::Domain(_) | CollisionError::Exact(ExactError::Domain(_))
-                )
+            self.0,
+            CollisionError::Parameter(_)
+                | CollisionError::Domain(_)
+                | CollisionError::Exact(ExactError::Domain(_))
         )
     }
 
     /// The reason in words.
     pub fn message(&self) -> String {
-        match self {
-            Self::Parameter(error) => error.to_string(),
-            Self::Encounter(error) => error.to_string(),
-            Self::Engine(error) => error.to_string(),
-        }
+        self.0.to_string()
     }
 
     /// The exception, whose message begins with the `place`.
@@ -65,24 +51,15 @@ impl Failure {
     }
 }
 
-impl From<EncounterError> for Failure {
-    fn from(error: EncounterError) -> Self {
-        match error {
-            EncounterError::Invalid(error) => Self::Parameter(error),
-            error => Self::Encounter(error),
-        }
+impl From<CollisionError> for Failure {
+    fn from(error: CollisionError) -> Self {
+        Self(error)
     }
 }
 
 impl From<InvalidValue> for Failure {
     fn from(error: InvalidValue) -> Self {
-        Self::Parameter(error)
-    }
-}
-
-impl From<CollisionError> for Failure {
-    fn from(error: CollisionError) -> Self {
-        Self::Engine(error)
+        Self(error.into())
     }
 }
 
@@ -118,7 +95,9 @@ pub fn of_atlas(error: &AtlasError) -> PyErr {
         AtlasError::Parameter(_)
         | AtlasError::Narrow(_)
         | AtlasError::Unverifiable(_)
-        | AtlasError::Tolerance { .. } => bad_input(error),
+        | AtlasError::Tolerance { .. }
+        | AtlasError::Dampings { .. } => bad_input(error),
+        AtlasError::Layer { source, .. } => of_atlas(source),
         _ => failed(error),
     }
 }

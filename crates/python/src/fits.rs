@@ -5,7 +5,9 @@ use pyo3::prelude::*;
 use serde_json::to_string;
 use stickslip_plane::Range;
 use stickslip_plane::progress::Report;
-use stickslip_practice::fit::{self, Bodies, Column, FitError, Free, Settings, Values};
+use stickslip_practice::fit::{
+    self, FitError, FitSettings, FittedBodies, Free, MeasuredColumn, Values,
+};
 use stickslip_practice::inputs::{self, Code};
 
 use crate::arrays::{expect_equal, numbers};
@@ -45,14 +47,14 @@ impl Fit {
         let columns = columns.iter().map(|(name, values)| {
             let values = numbers(values)?.into_iter();
             let values = values.map(|value| (!value.is_nan()).then_some(value)).collect();
-            Ok(Column { name: name.clone(), values })
+            Ok(MeasuredColumn { name: name.clone(), values })
         });
-        let columns: Vec<Column> = columns.collect::<PyResult<_>>()?;
+        let columns: Vec<MeasuredColumn> = columns.collect::<PyResult<_>>()?;
         expect_equal(columns.iter().map(|column| column.values.len()))?;
         let rows: Vec<usize> = (0..columns.first().map_or(0, |it| it.values.len())).collect();
         let bodies = bodies.map_or_else(|| scaled.bodies(), |pair| Ok(pair.fitted()))?;
         let data = fit::data(&columns, &rows, speed, bodies.are_scaled()).map_err(bad_input)?;
-        let settings = question.settings(Settings::new(bodies, data))?;
+        let settings = question.settings(FitSettings::new(bodies, data))?;
         let work = move |report: Report<'_>| fit::run(&settings, report);
         let found = watched(py, threads, progress.as_ref(), work)?;
         found.map(Self).map_err(exception)
@@ -81,7 +83,7 @@ impl Fit {
 }
 
 impl Question {
-    fn settings(self, settings: Settings) -> PyResult<Settings> {
+    fn settings(self, settings: FitSettings) -> PyResult<FitSettings> {
         let Self(free, ranges, eps_n, level, relative_errors) = self;
         let find = |name: &str| {
             Free::find(name).ok_or_else(|| {
@@ -90,7 +92,7 @@ impl Question {
             })
         };
         let free = free.iter().map(|name| find(name)).collect::<PyResult<_>>()?;
-        let mut settings = Settings { free, eps_n, level, relative_errors, ..settings };
+        let mut settings = FitSettings { free, eps_n, level, relative_errors, ..settings };
         for (name, low, high) in ranges {
             *settings.ranges.of_mut(find(&name)?) = Range { low, high };
         }
@@ -99,13 +101,13 @@ impl Question {
 }
 
 impl Scaled {
-    fn bodies(&self) -> PyResult<Bodies> {
+    fn bodies(&self) -> PyResult<FittedBodies> {
         let Self(law, alpha, (kappa, mu, damping)) = self;
         let (law, tangential_damping) = law.law()?;
         let values = Values { kappa: *kappa, mu: *mu, tangential_damping, damping: *damping };
         stickslip_model::Contact::new(*kappa, 1.0, *damping)
             .and_then(|contact| contact.with_law(law, tangential_damping))
-            .and_then(|_| Bodies::scaled(law, *alpha, &values))
+            .and_then(|_| FittedBodies::scaled(law, *alpha, &values))
             .map_err(bad_input)
     }
 }

@@ -235,7 +235,8 @@ impl FormulaSystem {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
-        let settings = own_system::Settings { name, system: self.system.clone(), runnable, end };
+        let settings =
+            own_system::OwnSystemSettings { name, system: self.system.clone(), runnable, end };
         studies::run(py, threads, progress.as_ref(), move |report| {
             let measured = own_system::run(&settings, report)?;
             Ok::<_, StudyError>((measured.study(), pictures::own_system::draw(&measured)))

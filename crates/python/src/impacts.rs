@@ -13,7 +13,7 @@ use stickslip_model::spheres::{
     quantity,
 };
 use stickslip_model::{CollisionError, Engine, InvalidValue};
-use stickslip_practice::fit::Bodies;
+use stickslip_practice::fit::FittedBodies;
 
 use crate::arrays::{Columns, expect_equal, numbers};
 use crate::engines::{Choice, LawChoice, document};
@@ -76,8 +76,8 @@ impl BodyPair {
     }
 
     /// The bodies of a fit.
-    pub fn fitted(&self) -> Bodies {
-        Bodies::of_sphere(&self.sphere, self.reduced)
+    pub fn fitted(&self) -> FittedBodies {
+        FittedBodies::of_sphere(&self.sphere, self.reduced)
     }
 }
 

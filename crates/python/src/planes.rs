@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip_model::{Contact, InvalidValue, Reduction};
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
+use stickslip_plane::atlas::{self, AtlasDocument, Frame, RatioRange, SCHEMA, Unlocated};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::Report;
 use stickslip_plane::sealed;
@@ -20,7 +20,7 @@ use crate::parallel::Threads;
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct Atlas {
     atlas: atlas::Atlas,
-    document: Document,
+    document: AtlasDocument,
 }
 
 #[pymethods]
@@ -53,7 +53,7 @@ impl Atlas {
         let work = move |report: Report<'_>| atlas::trace(frame, tolerance, report);
         let verified = watched(py, threads, progress.as_ref(), work)?;
         let verified = verified.map_err(|error| of_atlas(&error))?;
-        let document = Document::new(&verified);
+        let document = AtlasDocument::new(&verified);
         Ok(Self { atlas: verified, document })
     }
 
@@ -67,9 +67,9 @@ impl Atlas {
                 return Err(format!("schema is {schema}; expected {SCHEMA:?}"));
             }
             sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
-            let document: Document = serde_json::from_str(text).map_err(|e| e.to_string())?;
+            let document: AtlasDocument = serde_json::from_str(text).map_err(|e| e.to_string())?;
             let atlas = document.clone().try_into();
-            let atlas = atlas.map_err(|e: atlas::DocumentError| e.to_string())?;
+            let atlas = atlas.map_err(|e: atlas::AtlasDocumentError| e.to_string())?;
             Ok(Self { atlas, document })
         })
         .map_err(bad_input)
@@ -155,6 +155,5 @@ pub fn gaining_lines(
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
     let work = move |report: Report<'_>| gaining::trace(frame, tolerance, report);
     let found = watched(py, threads, progress.as_ref(), work)?.map_err(|error| of_atlas(&error))?;
-    let document = gaining::Document::from(&found);
-    Ok((serde_json::to_string(&document).map_err(failed)?, found.objection()))
+    Ok((found.document().to_string(), found.objection()))
 }

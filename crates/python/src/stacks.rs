@@ -6,7 +6,7 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::progress::Report;
 use stickslip_plane::sealed;
-use stickslip_plane::stack::{DampingStackError, StackDocument, stack as stacked};
+use stickslip_plane::stack::stack as stacked;
 
 use crate::background::watched;
 use crate::failure::{bad_input, failed, of_atlas};
@@ -27,10 +27,7 @@ pub fn stack(
     let frame = Frame::new(range(kappa), range(psi), 0.0);
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
     let work = move |report: Report<'_>| stacked(frame, &dampings, tolerance, report);
-    let made = watched(py, threads, progress.as_ref(), work)?.map_err(|error| match error {
-        DampingStackError::Dampings { .. } => bad_input(error),
-        DampingStackError::Atlas { source, .. } => of_atlas(&source),
-    })?;
-    let json = sealed::to_string(&StackDocument::from(&made)).map_err(failed)?;
+    let made = watched(py, threads, progress.as_ref(), work)?.map_err(|error| of_atlas(&error))?;
+    let json = sealed::to_string(&made.document()).map_err(failed)?;
     Ok((json, pictures::stack::draw(&made).document(), made.objection()))
 }

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use serde_json::to_string;
 use stickslip_model::Reduction;
 use stickslip_plane::progress::Report;
-use stickslip_practice::time_steps::{self, Scheme, Settings, TimeStepsError};
+use stickslip_practice::time_steps::{self, Scheme, TimeStepSettings, TimeStepsError};
 
 use crate::arrays::{Parameters, Points};
 use crate::background::watched;
@@ -35,7 +35,7 @@ impl TimeSteps {
         let names = Scheme::ALL.map(Scheme::name);
         let scheme = Scheme::find(scheme)
             .ok_or_else(|| bad_input(format!("scheme = {scheme:?}; expected one of {names:?}")))?;
-        let settings = Settings {
+        let settings = TimeStepSettings {
             contacts: Points::new(&parameters, &law)?.contacts()?,
             steps_per_contact: steps.0,
             phases: steps.1,

@@ -26,7 +26,7 @@ pub fn asymptote(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let kappa = Range { low: kappa.0, high: kappa.1 };
-    let settings = stiff_springs::Settings { kappa, psi };
+    let settings = stiff_springs::StiffSpringSettings { kappa, psi };
     settings.validate().map_err(bad_input)?;
     run(py, threads, progress.as_ref(), move |report| {
         let measured = stiff_springs::run(&settings, report)?;
@@ -46,11 +46,11 @@ pub fn converge(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let settings = match contacts {
-        None => convergence::Settings::usual(damping).map_err(bad_input)?,
+        None => convergence::ConvergenceSettings::usual(damping).map_err(bad_input)?,
         Some(contacts) => {
             let contacts = contacts.into_iter().map(|[kappa, psi, a]| Contact::new(kappa, psi, a));
             let contacts = contacts.collect::<Result<_, _>>().map_err(bad_input)?;
-            convergence::Settings { contacts }
+            convergence::ConvergenceSettings { contacts }
         }
     };
     settings.validate().map_err(bad_input)?;
@@ -71,8 +71,8 @@ pub fn compare_laws(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
-    let usual = contact_laws::Settings::default();
-    let settings = contact_laws::Settings { damping, tangential_damping, cells, ..usual };
+    let usual = contact_laws::ContactLawSettings::default();
+    let settings = contact_laws::ContactLawSettings { damping, tangential_damping, cells, ..usual };
     settings.validate().map_err(bad_input)?;
     run(py, threads, progress.as_ref(), move |report| {
         let computed = contact_laws::run(&settings, report).map_err(|it| it.to_string())?;

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use stickslip_plane::progress::Report;
 use stickslip_plane::{Range, sealed};
 use stickslip_practice::tables::{
-    self, Document, SCHEMA, Settings, Table, TableError, Verification, Window,
+    self, SCHEMA, Table, TableDocument, TableError, TableSettings, TableVerification, TableWindow,
 };
 
 use crate::arrays::{Pairs, numbers};
@@ -34,8 +34,8 @@ impl RestitutionTable {
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let window = Window::Scaled { kappa: range(kappa), psi: range(psi), damping };
-        Self::of(py, Settings { window, bound, regions }, threads, progress.as_ref())
+        let window = TableWindow::Scaled { kappa: range(kappa), psi: range(psi), damping };
+        Self::of(py, TableSettings { window, bound, regions }, threads, progress.as_ref())
     }
 
     /// Makes and verifies the table of a window of velocities of two bodies.
@@ -52,12 +52,12 @@ impl RestitutionTable {
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let window = Window::Velocities {
+        let window = TableWindow::Velocities {
             pair: pair.reduced(),
             normal_m_per_s: range(normal),
             tangential_m_per_s: range(tangential),
         };
-        Self::of(py, Settings { window, bound, regions }, threads, progress.as_ref())
+        Self::of(py, TableSettings { window, bound, regions }, threads, progress.as_ref())
     }
 
     /// The table in the text of a file that `table` has written.
@@ -65,7 +65,7 @@ impl RestitutionTable {
     fn read(py: Python<'_>, text: &str) -> PyResult<Self> {
         py.detach(|| {
             sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
-            let document: Document = serde_json::from_str(text)
+            let document: TableDocument = serde_json::from_str(text)
                 .map_err(|error| format!("expected a file of schema {SCHEMA:?}: {error}"))?;
             Table::try_from(document).map(Self).map_err(|error| error.to_string())
         })
@@ -74,7 +74,7 @@ impl RestitutionTable {
 
     /// The document of the table as JSON.
     fn json(&self) -> PyResult<String> {
-        sealed::to_string(&Document::from(&self.0)).map_err(failed)
+        sealed::to_string(&TableDocument::from(&self.0)).map_err(failed)
     }
 
     /// The table as a header for C.
@@ -88,7 +88,7 @@ impl RestitutionTable {
     #[expect(clippy::type_complexity, reason = "Python takes it apart")]
     fn facts(&self) -> ((f64, f64), (f64, f64), f64, (f64, f64, u64)) {
         let [x, y] = self.0.window.sides().map(|side| (side.low, side.high));
-        let Verification { points, largest_error, largest_error_of_eps_n, .. } =
+        let TableVerification { points, largest_error, largest_error_of_eps_n, .. } =
             self.0.verification;
         (x, y, self.0.bound, (largest_error, largest_error_of_eps_n, points))
     }
@@ -97,8 +97,8 @@ impl RestitutionTable {
     #[getter]
     fn scaled(&self) -> Option<(f64, f64)> {
         match self.0.window {
-            Window::Scaled { damping, .. } => Some((damping, self.0.constant_eps_n?)),
-            Window::Velocities { .. } => None,
+            TableWindow::Scaled { damping, .. } => Some((damping, self.0.constant_eps_n?)),
+            TableWindow::Velocities { .. } => None,
         }
     }
 
@@ -157,7 +157,7 @@ impl RestitutionTable {
     /// Makes and verifies the table that settings ask for.
     fn of(
         py: Python<'_>,
-        settings: Settings,
+        settings: TableSettings,
         threads: usize,
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Self> {

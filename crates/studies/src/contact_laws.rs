@@ -4,21 +4,22 @@
 //! Start reading here; then, in this order: `settings` (which laws, over which window), `law` (what
 //! is computed of each), `findings` and `tables`.
 
-mod findings;
-mod law;
-mod settings;
-mod tables;
-
 use rayon::prelude::*;
 use serde_json::json;
+use stickslip_model::SpringEnergy;
+use stickslip_model::text::number;
 use stickslip_plane::progress::{Progress, Report};
 
 use crate::error::StudyError;
 use crate::study::Study;
 
+mod law;
+mod settings;
+mod tables;
+
 pub use crate::limits::MOST_CELLS;
 pub use law::{Kinds, LawOnPlane};
-pub use settings::{Named, Settings, distinct};
+pub use settings::{ContactLawSettings, Named, distinct};
 pub use tables::LAWS;
 
 /// The name of the layout of the JSON, with its version.
@@ -30,7 +31,7 @@ pub const TITLE: &str = "Contact laws of particle codes";
 #[derive(Clone, Debug)]
 pub struct ContactLaws {
     /// The laws and the window.
-    pub settings: Settings,
+    pub settings: ContactLawSettings,
     /// What each law does, in the order of the settings.
     pub laws: Vec<LawOnPlane>,
 }
@@ -39,9 +40,9 @@ pub struct ContactLaws {
 ///
 /// ```
 /// use stickslip_plane::progress;
-/// use stickslip_studies::contact_laws::{self, Settings};
+/// use stickslip_studies::contact_laws::{self, ContactLawSettings};
 ///
-/// let settings = Settings { cells: 4, ..Settings::default() };
+/// let settings = ContactLawSettings { cells: 4, ..ContactLawSettings::default() };
 /// let computed = contact_laws::run(&settings, progress::SILENT)?;
 /// assert_eq!(computed.study().tables[0].rows.len(), settings.laws.len());
 /// # Ok::<(), stickslip_studies::StudyError>(())
@@ -49,7 +50,7 @@ pub struct ContactLaws {
 ///
 /// # Errors
 /// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<ContactLaws, StudyError> {
+pub fn run(settings: &ContactLawSettings, progress: Report<'_>) -> Result<ContactLaws, StudyError> {
     settings.validate()?;
     progress(Progress::Begin { steps: settings.laws.len() });
     let laws = settings.laws.par_iter().map(|named| {
@@ -63,7 +64,6 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<ContactLaws, Stu
 
 impl ContactLaws {
     /// The study: findings, numbers and a table.
-    #[must_use]
     pub fn study(&self) -> Study {
         let json = json!({
             "schema": SCHEMA,
@@ -81,5 +81,49 @@ impl ContactLaws {
             json,
             tables: vec![self.table()],
         }
+    }
+}
+
+impl ContactLaws {
+    fn findings(&self) -> Vec<String> {
+        let count = self.laws.len();
+        let cells = self.settings.cells;
+        let created = |spring: SpringEnergy| spring.creates();
+        let creating = self.laws.iter().filter(|law| created(law.spring())).count();
+        let mut findings = vec![
+            format!(
+                "{count} laws over {cells} × {cells} collisions each, κ from {} to {} and ψ from {} \
+                 to {}, without damping and with a = {}, b = {}.",
+                number(self.settings.kappa.low, 4),
+                number(self.settings.kappa.high, 4),
+                number(self.settings.psi.low, 4),
+                number(self.settings.psi.high, 4),
+                number(self.settings.damping, 4),
+                number(self.settings.tangential_damping, 4),
+            ),
+            format!(
+                "The springs of {creating} of the {count} laws can create energy: their stiffness \
+                 changes with the load, and their history is not rescaled where it must be."
+            ),
+        ];
+        let gaining: Vec<_> = self.laws.iter().filter(|law| law.undamped.gaining > 0).collect();
+        for law in &gaining {
+            let (eps_t, [kappa, psi]) = law.undamped.largest;
+            findings.push(format!(
+                "`{}` without damping: {} of {} collisions have |ε_t| above 1, at most {} at κ = {}, \
+                 ψ = {}; with damping {}.",
+                law.named.names[0],
+                law.undamped.gaining,
+                law.undamped.collisions,
+                number(eps_t, 5),
+                number(kappa, 4),
+                number(psi, 4),
+                law.damped.gaining,
+            ));
+        }
+        if gaining.is_empty() {
+            findings.push("No collision has |ε_t| above 1.".to_owned());
+        }
+        findings
     }
 }

@@ -1,25 +1,24 @@
 //! The study of convergence: how errors fall with the step and the tolerance, and what they cost.
 //!
-//! Start reading here; then, in this order: `settings` (which collisions), [`plain_time`] (the law
-//! as the paper writes it), `measure` (the errors of one way to integrate), `series` (all ways,
-//! over steps and tolerances), `collisions` (the errors of `collide`), `findings` (what that says)
-//! and `tables`.
+//! Start reading here; then, in this order: [`plain_time`] (the law as the paper writes it),
+//! `measure` (the errors of one way to integrate), `series` (all ways, over steps and tolerances),
+//! `collisions` (the errors of `collide`), `findings` (what that says) and `tables`.
+
+use rayon::prelude::*;
+use serde_json::json;
+use stickslip_model::{Collision, CollisionFailure, Contact, GivenValue, InvalidValue};
+use stickslip_plane::progress::{Progress, Report};
+
+use crate::error::StudyError;
+use crate::paper::{Reading, STIFFNESS};
+use crate::study::Study;
 
 mod collisions;
 mod findings;
 mod measure;
 pub mod plain_time;
 mod series;
-mod settings;
 mod tables;
-
-use rayon::prelude::*;
-use serde_json::json;
-use stickslip_model::{Collision, CollisionFailure};
-use stickslip_plane::progress::{Progress, Report};
-
-use crate::error::StudyError;
-use crate::study::Study;
 
 pub use crate::limits::MOST_STIFFNESS;
 pub use collisions::{Accuracy, PairAccuracy};
@@ -27,7 +26,6 @@ pub use measure::{
     Approximation, Coordinates, Deviation, Errors, Spread, Switching, integrate, measure, reference,
 };
 pub use series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
-pub use settings::Settings;
 pub use tables::{ORDERS, TIMES};
 
 /// The name of the layout of the JSON, with its version.
@@ -51,7 +49,10 @@ pub struct Convergence {
 /// # Errors
 /// [`StudyError`]: there is no collision, one is too stiff or has no reference to compare with, or
 /// `collide` cannot compute it.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Convergence, StudyError> {
+pub fn run(
+    settings: &ConvergenceSettings,
+    progress: Report<'_>,
+) -> Result<Convergence, StudyError> {
     settings.validate()?;
     let references = settings.contacts.iter().map(|contact| {
         reference(*contact).map_err(|source| CollisionFailure::new(contact, source))
@@ -87,7 +88,6 @@ fn measure_all(references: &[Collision], progress: Report<'_>) -> Vec<ErrorSerie
 
 impl Convergence {
     /// The study: findings, numbers and tables.
-    #[must_use]
     pub fn study(&self) -> Study {
         let json = json!({
             "schema": SCHEMA,
@@ -116,5 +116,48 @@ impl Convergence {
 
     fn is_damped(&self) -> bool {
         self.references.iter().any(|collision| collision.contact.damping() > 0.0)
+    }
+}
+
+/// The collisions of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvergenceSettings {
+    /// The collisions whose errors are measured; κ is at most [`MOST_STIFFNESS`].
+    pub contacts: Vec<Contact>,
+}
+
+impl ConvergenceSettings {
+    /// The usual study: collisions with two to eight switches without damping, κ = 18 and 63, ψ =
+    /// 0.1, 0.2, … 1.9.
+    ///
+    /// # Errors
+    /// [`InvalidValue`]: the damping is out of its range.
+    pub fn usual(damping: f64) -> Result<Self, InvalidValue> {
+        let points = Reading::kappas(STIFFNESS)
+            .into_iter()
+            .flat_map(|kappa| (1..20).map(move |tenths| (kappa, f64::from(tenths) / 10.0)));
+        let contacts = points.map(|(kappa, psi)| Contact::new(kappa, psi, damping));
+        Ok(Self { contacts: contacts.collect::<Result<_, _>>()? })
+    }
+
+    /// Checks all settings.
+    ///
+    /// # Errors
+    /// [`StudyError::Settings`]: there is no collision, or one is too stiff; [`StudyError::Law`].
+    pub fn validate(&self) -> Result<(), StudyError> {
+        if self.contacts.is_empty() {
+            let none = GivenValue::Phrase("0 collisions".into());
+            return Err(InvalidValue::new("a study of", none, "at least one").into());
+        }
+        for contact in &self.contacts {
+            contact.require_paper("the convergence")?;
+        }
+        for kappa in self.contacts.iter().map(Contact::kappa) {
+            if kappa > MOST_STIFFNESS {
+                let expected = format!("a number above 0, at most {MOST_STIFFNESS:?}");
+                return Err(InvalidValue::new("kappa", kappa, expected).into());
+            }
+        }
+        Ok(())
     }
 }

@@ -15,10 +15,11 @@
 //!
 //! ```
 //! use stickslip_plane::{Range, progress};
-//! use stickslip_studies::stiff_springs::{self, Settings};
+//! use stickslip_studies::stiff_springs::{self, StiffSpringSettings};
 //!
 //! let kappa = Range { low: 10.0, high: 100.0 };
-//! let measured = stiff_springs::run(&Settings { kappa, psi: vec![1.0] }, progress::SILENT)?;
+//! let settings = StiffSpringSettings { kappa, psi: vec![1.0] };
+//! let measured = stiff_springs::run(&settings, progress::SILENT)?;
 //! assert_eq!(measured.study().tables[0].name, "asymptote_envelope");
 //! # Ok::<(), stickslip_studies::StudyError>(())
 //! ```

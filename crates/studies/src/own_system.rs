@@ -24,7 +24,7 @@ const WANTED: [f64; 2] = [1e-6, 1e-9];
 
 /// Which run is studied.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct OwnSystemSettings {
     /// The name of the system in titles.
     pub name: String,
     /// The system.
@@ -60,7 +60,10 @@ pub struct ComparedRun {
 ///
 /// # Errors
 /// [`StudyError::Run`]: the reference cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<SystemConvergence, StudyError> {
+pub fn run(
+    settings: &OwnSystemSettings,
+    progress: Report<'_>,
+) -> Result<SystemConvergence, StudyError> {
     let tasks: Vec<(EmbeddedPair, f64)> = METHODS
         .iter()
         .flat_map(|method| EXPONENTS.rev().map(|power| (*method, 10_f64.powi(power))))
@@ -135,7 +138,7 @@ impl ComparedRun {
 #[derive(Clone, Debug)]
 pub struct SystemConvergence {
     /// The run.
-    pub settings: Settings,
+    pub settings: OwnSystemSettings,
     /// The run that others are compared with.
     pub reference: Recording,
     /// The run that measures the error of the reference.
@@ -146,7 +149,6 @@ pub struct SystemConvergence {
 
 impl SystemConvergence {
     /// The study: findings, numbers and tables.
-    #[must_use]
     pub fn study(&self) -> Study {
         let tables = vec![self.tolerances(), self.events()];
         let json = json!({

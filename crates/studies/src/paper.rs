@@ -57,7 +57,6 @@ impl Reading {
     pub const ALL: [Self; 2] = [Self::Printed, Self::Axis];
 
     /// The name of the reading in the names of files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Printed => "printed",
@@ -66,7 +65,6 @@ impl Reading {
     }
 
     /// The quantity that the axis shows.
-    #[must_use]
     pub fn axis(self) -> &'static str {
         match self {
             Self::Printed => "κ",
@@ -75,7 +73,6 @@ impl Reading {
     }
 
     /// The reading in words.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::Printed => "axis read as κ of (24)",
@@ -84,7 +81,6 @@ impl Reading {
     }
 
     /// κ of equation (24) where the axis shows `value`.
-    #[must_use]
     pub fn kappa(self, value: f64) -> f64 {
         match self {
             Self::Printed => value,
@@ -93,20 +89,17 @@ impl Reading {
     }
 
     /// κ of equation (24) where the axis shows `value`, in both readings.
-    #[must_use]
     pub fn kappas(value: f64) -> [f64; 2] {
         Self::ALL.map(|reading| reading.kappa(value))
     }
 }
 
 /// ψ at the impact ratio g_t/g_n.
-#[must_use]
 pub fn psi(ratio: f64) -> f64 {
     REDUCTION.psi(ratio)
 }
 
 /// The impact ratio g_t/g_n at ψ.
-#[must_use]
 pub fn ratio(psi: f64) -> f64 {
     REDUCTION.ratio(psi)
 }

@@ -1,32 +1,33 @@
 //! The study of the limit of stiff springs: how ε_t tends to 0, and why as κ^{−5/4}.
 //!
-//! Start reading here; then, in this order: `settings` (which stiffnesses and impact ratios),
-//! [`limit`] (maxima of full collisions), `maxima` (what is measured of them), `profile` (the inner
-//! problem beside them), `fit` (exponent and constant), `findings` and `tables`.
+//! Start reading here; then, in this order: [`limit`] (maxima of full collisions), `maxima` (what
+//! is measured of them), `profile` (the inner problem beside them), `fit` (exponent and constant),
+//! `findings` and `tables`.
+
+use rayon::prelude::*;
+use serde_json::json;
+use stickslip_model::limits::inner;
+use stickslip_model::limits::inner::Peak;
+use stickslip_model::{GivenValue, InvalidValue};
+use stickslip_plane::Range;
+use stickslip_plane::progress::{Progress, Report};
+
+use crate::error::StudyError;
+use crate::limits::{MOST_PSI, STIFFNESSES};
+use crate::study::Study;
+use limit::BOUND_FACTOR;
 
 mod findings;
 mod fit;
 pub mod limit;
 mod maxima;
 mod profile;
-mod settings;
 mod tables;
 
-use rayon::prelude::*;
-use serde_json::json;
-use stickslip_model::limits::inner::{self, Peak};
-use stickslip_plane::Range;
-use stickslip_plane::progress::{Progress, Report};
-
-use crate::error::StudyError;
-use crate::study::Study;
-use limit::BOUND_FACTOR;
-
-pub use fit::{Estimate, Fits};
+pub use fit::{Fits, FittedConstant};
 pub use limit::Excess;
 pub use maxima::{LargestRestitution, LargestVelocity, MOST_RESOLVED, RangeStart};
 pub use profile::{ComparedCollision, CurvePoint, OtherStart, Profile};
-pub use settings::Settings;
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.asymptote/1";
@@ -63,7 +64,10 @@ pub struct StiffSprings {
 ///
 /// # Errors
 /// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
-pub fn run(settings: &Settings, progress: Report<'_>) -> Result<StiffSprings, StudyError> {
+pub fn run(
+    settings: &StiffSpringSettings,
+    progress: Report<'_>,
+) -> Result<StiffSprings, StudyError> {
     settings.validate()?;
     let kappas = stiffnesses(settings.kappa);
     progress(Progress::Begin {
@@ -116,7 +120,6 @@ fn at_each<V: Copy + Sync, T: Send>(
 
 impl StiffSprings {
     /// The study: findings, numbers and tables.
-    #[must_use]
     pub fn study(&self) -> Study {
         let tables = self.tables();
         let mut json = json!({
@@ -149,5 +152,53 @@ impl StiffSprings {
             json,
             tables,
         }
+    }
+}
+
+/// The stiffnesses and impact ratios of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffSpringSettings {
+    /// Interval of the scaled stiffness κ, within 3 to 10¹⁰.
+    pub kappa: Range,
+    /// Reduced impact ratios ψ, each above 0 and below 2; one to four.
+    pub psi: Vec<f64>,
+}
+
+impl Default for StiffSpringSettings {
+    /// κ from 10 to 10⁸, ψ = 0.3, 1 and 1.7.
+    fn default() -> Self {
+        Self { kappa: Range { low: 10.0, high: 1e8 }, psi: vec![0.3, 1.0, 1.7] }
+    }
+}
+
+impl StiffSpringSettings {
+    /// Checks all settings.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] names the first that is out of range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
+        let Range { low, high } = self.kappa;
+        let (least, most) = (STIFFNESSES.low, STIFFNESSES.high);
+        if !(least <= low && low < high && high <= most) {
+            let expected = format!("LO:HI with {least:?} <= LO < HI <= {most:?}");
+            return Err(InvalidValue::new("kappa", [low, high], expected));
+        }
+        let count = self.psi.len();
+        if !(1..=MOST_PSI).contains(&count) {
+            let given = GivenValue::Phrase(format!("has {count} values").into());
+            return Err(InvalidValue::new("psi", given, format!("1 to {MOST_PSI}")));
+        }
+        for (index, &psi) in self.psi.iter().enumerate() {
+            let (phrase, expected) = if !(psi > 0.0 && psi < 2.0) {
+                let expected = "numbers above 0 and below 2, from where on there is no switch";
+                (format!("{psi:?} is out of range"), expected)
+            } else if self.psi[..index].contains(&psi) {
+                (format!("has {psi:?} twice"), "each value once")
+            } else {
+                continue;
+            };
+            return Err(InvalidValue::new("psi", GivenValue::Phrase(phrase.into()), expected));
+        }
+        Ok(())
     }
 }

@@ -61,20 +61,17 @@ pub enum Cell {
 
 impl Column {
     /// A column for files.
-    #[must_use]
     pub const fn new(name: &'static str, meaning: &'static str) -> Self {
         Self { name, meaning, heading: None }
     }
 
     /// A column of a table that is also shown on a page, with a heading of one to three words.
-    #[must_use]
     pub const fn headed(name: &'static str, heading: &'static str, meaning: &'static str) -> Self {
         Self { name, meaning, heading: Some(heading) }
     }
 
     /// The heading of the column on a page: short, with the unit, in markup. Columns of tables that
     /// no page shows have only their name.
-    #[must_use]
     pub const fn heading(&self) -> &'static str {
         match self.heading {
             Some(heading) => heading,
@@ -86,7 +83,6 @@ impl Column {
 impl Cell {
     /// The value as it stands in a file. A number has the shortest form that reads back exactly.
     /// Text has no marks of code.
-    #[must_use]
     pub fn text(&self) -> String {
         match self {
             Self::Number(value) if value.is_nan() => String::new(),
@@ -123,7 +119,6 @@ impl From<&str> for Cell {
 
 impl Table {
     /// The table as JSON: an object for each row, with the names of the columns.
-    #[must_use]
     pub fn json(&self) -> Value {
         let names = || self.columns.iter().map(|column| column.name.to_owned());
         let values = |row: &Vec<Cell>| row.iter().map(|cell| json!(cell)).collect::<Vec<_>>();

@@ -5,11 +5,11 @@ use std::fmt::Debug;
 use crate::doubts::Doubts;
 use crate::family::Family;
 use crate::names::{Names, Unnamed};
-use crate::options::{TraceError, TraceOptions};
+use crate::options::TraceOptions;
 use crate::regions::finding::{Finding, SubdivisionError};
 use crate::regions::locate::Location;
 use crate::regions::subdivision::Subdivision;
-use crate::regions::verify::report::{Mismatch, Reason, Unverified, Verification, VerifyError};
+use crate::regions::verify::report::{Mismatch, Reason, Unverified, Verification};
 use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::tracing::tracer::state::State;
@@ -67,7 +67,7 @@ impl Default for AtlasOptions {
 /// assert!(atlas.agrees() && atlas.plane.regions().len() == 2);
 /// assert_eq!(atlas.label(&Point::new(0.1, 0.2)), Some(&true));
 /// assert_eq!(atlas.objection(), None);
-/// # Ok::<(), stickslip_tracer::AtlasError<Infallible>>(())
+/// # Ok::<(), stickslip_tracer::TraceError<Infallible>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Atlas<Label, Margin> {
@@ -89,20 +89,6 @@ pub struct Atlas<Label, Margin> {
 
 /// The atlas of a family.
 pub type AtlasOf<F> = Atlas<<F as Family>::Label, <F as Family>::Margin>;
-
-/// Why there is no atlas.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AtlasError<E: std::error::Error + 'static> {
-    /// The trace failed.
-    #[error(transparent)]
-    Trace(#[from] TraceError<E>),
-    /// The window or the tolerance makes no subdivision.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
-    /// The options of the verification are not possible.
-    #[error(transparent)]
-    Verify(#[from] VerifyError),
-}
 
 impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
     /// The regions of a network, of which none is verified yet.
@@ -127,7 +113,7 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
         &mut self,
         options: &AtlasOptions,
         labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, E>>>,
-    ) -> Result<bool, VerifyError> {
+    ) -> Result<bool, SubdivisionError> {
         let sentence = |error: E| error.to_string();
         let labels = |points: &[Point]| {
             let labels = labels(points)?.into_iter();

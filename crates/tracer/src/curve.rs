@@ -69,6 +69,19 @@ pub enum VertexKind {
 }
 
 impl VertexKind {
+    /// Its name, as in files of collisions and in Python.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::WindowEdge => "window-edge",
+            Self::WindowCorner => "window-corner",
+            Self::Crossing => "crossing",
+            Self::Degenerate => "degenerate",
+            Self::GrazeAtEnd => "graze-at-end",
+            Self::VanishingPhase => "vanishing-phase",
+        }
+    }
+
     /// Whether the vertex is on an edge of the window or in a corner.
     #[must_use]
     pub fn is_on_window(self) -> bool {

@@ -137,12 +137,14 @@ where
     P: Problem<N, G>,
     M: Method,
 {
-    /// How the run at `point` ends.
+    /// How and where the run at `point` ends.
     ///
     /// # Errors
     /// The error of a run that fails.
-    pub fn outcome(&self, point: &Point) -> Result<Outcome, RunError> {
-        self.run(point).map(|(outcome, _)| outcome)
+    pub fn outcome(&self, point: &Point) -> Result<(Outcome, f64), RunError> {
+        let (system, start) = self.problem.at(point);
+        let run = run(self.method, &system, start, self.end, &self.options, &mut ())?;
+        Ok((run.outcome, run.s))
     }
 
     /// The outcome of the run at `point`, and the guards that fire.

@@ -122,7 +122,7 @@ mod tracing;
 mod watch;
 mod window;
 
-pub use atlas::{Atlas, AtlasError, AtlasOf, AtlasOptions};
+pub use atlas::{Atlas, AtlasOf, AtlasOptions};
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
 #[cfg(feature = "serde")]
@@ -142,16 +142,14 @@ pub use regions::locate::Location;
 pub use regions::outline::Stretch;
 pub use regions::region::{Region, Side};
 pub use regions::subdivision::Subdivision;
-pub use regions::verify::report::{
-    Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError,
-};
+pub use regions::verify::report::{Checkpoint, Mismatch, Origin, Reason, Unverified, Verification};
 pub use regions::verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};
 pub use stack::change::{Change, Effect};
 pub use stack::conditions::MeetingKind;
 #[cfg(feature = "serde")]
 pub use stack::document::{LayerDocument, StackDocument};
 pub use stack::meeting::Meeting;
-pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
+pub use stack::{Layer, Stack, StackOf, StackOptions};
 pub use stickslip_solver::InvalidValue;
 pub use survey::{DraftedOf, Surveyor};
 pub use tracing::branch::Branch;

@@ -2,6 +2,7 @@
 
 use stickslip_solver::InvalidValue;
 
+use crate::regions::finding::SubdivisionError;
 use crate::window::{Point, Window};
 
 /// The options of a trace. [`TraceOptions::validate`] checks them when the trace starts.
@@ -108,7 +109,7 @@ impl TraceOptions {
     }
 }
 
-/// Why a trace failed.
+/// Why there is no trace, no atlas or no stack.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TraceError<E: std::error::Error + 'static> {
     /// An option is out of its range.
@@ -146,5 +147,22 @@ pub enum TraceError<E: std::error::Error + 'static> {
     NotANumber {
         /// The point of the margin.
         point: Point,
+    },
+    /// The window, the tolerance or the options of the verification make no regions.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
+    /// The values of a stack are fewer than two, not finite, or not in ascending order.
+    #[error("expected two values or more, finite and in ascending order")]
+    Values,
+    /// The width of the brackets of a stack is out of its range.
+    #[error("the width is {0}, expected 1e-9 to 0.1")]
+    Width(f64),
+    /// An atlas of a stack failed.
+    #[error("at the value {value}")]
+    Layer {
+        /// The value of the third parameter.
+        value: f64,
+        /// The error of the atlas.
+        source: Box<Self>,
     },
 }

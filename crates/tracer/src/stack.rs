@@ -28,9 +28,10 @@ mod structure;
 
 use std::fmt::Debug;
 
-use crate::atlas::{Atlas, AtlasError, AtlasOptions};
+use crate::atlas::{Atlas, AtlasOptions};
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
+use crate::options::TraceError;
 use crate::stack::change::Change;
 use crate::stack::search::Search;
 use crate::stack::structure::Structure;
@@ -97,7 +98,7 @@ impl Default for StackOptions {
 /// let change = &stack.changes[0];
 /// assert!((change.meeting.unwrap().value - 1.0).abs() < 1e-9);
 /// assert_eq!(stack.changes.len(), 1);
-/// # Ok::<(), stickslip_tracer::StackError<Infallible>>(())
+/// # Ok::<(), stickslip_tracer::TraceError<Infallible>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Stack<Label, Margin> {
@@ -127,25 +128,6 @@ pub struct Layer<Label, Margin> {
     pub atlas: Atlas<Label, Margin>,
 }
 
-/// Why there is no stack.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StackError<E: std::error::Error + 'static> {
-    /// The values are fewer than two, not finite, or not in ascending order.
-    #[error("expected two values or more, finite and in ascending order")]
-    Values,
-    /// The width is out of its range.
-    #[error("the width is {0}, expected 1e-9 to 0.1")]
-    Width(f64),
-    /// An atlas failed.
-    #[error("at the value {value}")]
-    Atlas {
-        /// The value of the third parameter.
-        value: f64,
-        /// The error of the atlas.
-        source: AtlasError<E>,
-    },
-}
-
 impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
     /// The stack of the family that `family` gives at each value of the third parameter, with
     /// atlases at `values`, which ascend. `family` is only called between the first and the last
@@ -159,7 +141,7 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         window: &Window,
         values: &[f64],
         options: &StackOptions,
-    ) -> Result<Self, StackError<F::Error>>
+    ) -> Result<Self, TraceError<F::Error>>
     where
         F: Family<Label = Label, Margin = Margin>,
     {
@@ -179,17 +161,17 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         options: &StackOptions,
         executor: E,
         watch: Watch<'_>,
-    ) -> Result<Self, StackError<F::Error>>
+    ) -> Result<Self, TraceError<F::Error>>
     where
         F: Family<Label = Label, Margin = Margin>,
         E: Executor<F>,
     {
         let ascend = values.windows(2).all(|pair| pair[0] < pair[1]);
         if values.len() < 2 || !ascend || !values.iter().all(|value| value.is_finite()) {
-            return Err(StackError::Values);
+            return Err(TraceError::Values);
         }
         if !(1e-9..=0.1).contains(&options.width) {
-            return Err(StackError::Width(options.width));
+            return Err(TraceError::Width(options.width));
         }
         // Places beyond the window's edges say nothing about changes inside.
         let mut options = *options;
@@ -255,12 +237,5 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         }
         let before = self.structures.partition_point(|(start, _)| *start <= value);
         Some(self.structures[before.checked_sub(1)?].1.labels())
-    }
-}
-
-impl<E: std::error::Error + 'static> StackError<E> {
-    /// The error of an atlas at a value.
-    fn at(value: f64) -> impl Fn(AtlasError<E>) -> Self {
-        move |source| Self::Atlas { value, source }
     }
 }

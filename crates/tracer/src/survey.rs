@@ -1,12 +1,11 @@
 //! Tracing and verifying in turn: where runs disagree with the regions, the tracer looks again.
 
-use crate::atlas::{Atlas, AtlasError, AtlasOf, AtlasOptions};
+use crate::atlas::{Atlas, AtlasOf, AtlasOptions};
 use crate::draft::{Draft, Own};
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
-use crate::options::TraceOptions;
+use crate::options::{TraceError, TraceOptions};
 use crate::regions::finding::SubdivisionError;
-use crate::regions::verify::report::VerifyError;
 use crate::tracing::extrema::Extremum;
 use crate::tracing::margins::Lines;
 use crate::tracing::network::NetworkOf;
@@ -52,7 +51,7 @@ use crate::window::{Point, Window};
 /// // It goes on to the same atlas.
 /// let finished = surveyor.resume(&Parabola, begun)?;
 /// assert_eq!(finished.plane.curves(), atlas.plane.curves());
-/// # Ok::<(), stickslip_tracer::AtlasError<Infallible>>(())
+/// # Ok::<(), stickslip_tracer::TraceError<Infallible>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Surveyor<'w, E = Serial> {
@@ -96,7 +95,7 @@ type ByMargins<'f, 'w, D> = (DraftedOf<D>, Lines<'f, 'w, <D as Draft>::Family>);
 type Found<'f, 'w, D> = (DraftedOf<D>, Option<Lines<'f, 'w, <D as Draft>::Family>>);
 
 /// Why there is no atlas of a draft.
-type DraftError<D> = AtlasError<<<D as Draft>::Family as Family>::Error>;
+type DraftError<D> = TraceError<<<D as Draft>::Family as Family>::Error>;
 
 impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
     /// The atlas that a [`Surveyor`] with these options makes on this thread.
@@ -107,7 +106,7 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
         family: &F,
         window: &Window,
         options: &AtlasOptions,
-    ) -> Result<Self, AtlasError<F::Error>>
+    ) -> Result<Self, TraceError<F::Error>>
     where
         F: Family<Label = Label, Margin = Margin>,
     {
@@ -132,7 +131,7 @@ impl<'w, E> Surveyor<'w, E> {
         &self,
         family: &F,
         window: &Window,
-    ) -> Result<AtlasOf<F>, AtlasError<F::Error>>
+    ) -> Result<AtlasOf<F>, TraceError<F::Error>>
     where
         E: Executor<F>,
     {
@@ -195,7 +194,7 @@ impl<'w, E> Surveyor<'w, E> {
         &self,
         family: &F,
         mut atlas: AtlasOf<F>,
-    ) -> Result<AtlasOf<F>, AtlasError<F::Error>>
+    ) -> Result<AtlasOf<F>, TraceError<F::Error>>
     where
         E: Executor<F>,
     {
@@ -305,7 +304,7 @@ impl<'w, E> Surveyor<'w, E> {
         draft: &D,
         atlas: &mut DraftedOf<D>,
         options: &AtlasOptions,
-    ) -> Result<bool, VerifyError>
+    ) -> Result<bool, SubdivisionError>
     where
         E: Executor<D::Family>,
     {

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use stickslip::model::{Damping, Law, presets};
 use stickslip::plane::{Range, progress};
 use stickslip_practice::fit::{
-    self, Bodies, Datum, Fit, FitError, Measured, Settings, Survey, Values,
+    self, Datum, Fit, FitError, FitSettings, FittedBodies, Measured, Survey, Values,
 };
 
 #[allow(dead_code, reason = "the tests use more of it")]
@@ -52,7 +52,7 @@ fn measured() -> Result<(), FitError> {
                 }
                 let start = Instant::now();
                 let mut settings =
-                    Settings { eps_n: Some(eps_n), ..Settings::new(bodies, data.clone()) };
+                    FitSettings { eps_n: Some(eps_n), ..FitSettings::new(bodies, data.clone()) };
                 if !law.acts_as_paper(1.0 - eps_n, 0.0) {
                     settings.ranges.kappa.high = INTEGRATED[usize::from(eps_n < 1.0)];
                 }
@@ -162,13 +162,13 @@ fn coverage() -> Result<(), FitError> {
 fn simulate(kind: &Kind) -> Result<(), FitError> {
     let start = Instant::now();
     let Kind { values, quantity, noise, known, .. } = *kind;
-    let bodies = Bodies::scaled(Law::PAPER, 2.0 / 7.0, &values)?;
+    let bodies = FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &values)?;
     let angles: Vec<f64> = kind.angles_deg.iter().map(|angle| angle.to_radians()).collect();
     let exact = fit::predicted(&bodies, 1.0, quantity, &angles)?;
     let error = known.then_some(noise);
     let data = angles.iter().zip(&exact);
     let data = data.map(|(angle, value)| Datum::at_angle(*angle, 1.0, quantity, *value, error));
-    let mut settings = Settings::new(bodies, data.collect());
+    let mut settings = FitSettings::new(bodies, data.collect());
     settings.ranges.kappa = kind.kappa;
     settings.level = kind.level;
     let survey = Survey::new(&settings, progress::SILENT)?;

@@ -13,7 +13,7 @@ use std::fs;
 use serde_json::Value;
 use stickslip::model::Engine;
 use stickslip::plane::progress;
-use stickslip_practice::time_steps::{self, Settings};
+use stickslip_practice::time_steps::{self, TimeStepSettings};
 
 #[path = "../../../tests/common/lammps.rs"]
 mod lammps;
@@ -56,8 +56,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn compared(case: &Value, (name, steps): (&str, f64)) -> Result<Compared, Box<dyn Error>> {
     let number = |value: &Value| value.as_f64().ok_or("no number");
     let contact = lammps::contact(case);
-    let settings =
-        Settings { contacts: vec![contact], steps_per_contact: vec![steps], ..Settings::default() };
+    let settings = TimeStepSettings {
+        contacts: vec![contact],
+        steps_per_contact: vec![steps],
+        ..TimeStepSettings::default()
+    };
     let result = time_steps::run(&settings, progress::SILENT)?;
     let errors = result.rows[0].eps_t.ok_or("no errors")?;
     let expected = &case["time_step"][name];

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use stickslip_figure::pictures::studies as pictures;
 use stickslip_files::input::{number, range};
 use stickslip_plane::Range;
-use stickslip_studies::stiff_springs::{self, Settings};
+use stickslip_studies::stiff_springs::{self, StiffSpringSettings};
 
 use crate::error::Failure;
 use crate::shared::study;
@@ -36,12 +36,9 @@ pub struct AsymptoteArguments {
 }
 
 /// Makes the study, writes its files and prints its findings.
-///
-/// # Errors
-/// An option is out of range, files cannot be written, or a collision cannot be computed.
 pub fn run(arguments: &AsymptoteArguments) -> Result<(), Failure> {
     let AsymptoteArguments { kappa, psi, out, threads } = arguments;
-    let settings = Settings { kappa: *kappa, psi: psi.clone() };
+    let settings = StiffSpringSettings { kappa: *kappa, psi: psi.clone() };
     settings.validate().map_err(study::refused)?;
     study::run(out, *threads, |report| {
         let measured = stiff_springs::run(&settings, report)?;

@@ -85,10 +85,6 @@ pub struct CollideArguments {
 }
 
 /// Computes one collision or those of a file.
-///
-/// # Errors
-/// Options contradict each other, a collision cannot be computed, or a file or standard output
-/// cannot be used.
 pub fn run(arguments: &CollideArguments) -> Result<(), Failure> {
     let CollisionArguments { mu, alpha, damping, e_n } = arguments.collision;
     let CollideArguments { kappa, psi, ratio, .. } = *arguments;

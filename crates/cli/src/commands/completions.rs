@@ -18,9 +18,6 @@ pub struct CompletionsArguments {
 }
 
 /// Prints the script for a shell.
-///
-/// # Errors
-/// Standard output cannot be written.
 pub fn run(arguments: CompletionsArguments) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);

@@ -6,7 +6,7 @@ use stickslip_figure::pictures::studies as pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::Given;
 use stickslip_model::Law;
-use stickslip_studies::convergence::{self, Settings};
+use stickslip_studies::convergence::{self, ConvergenceSettings};
 use stickslip_studies::own_system;
 
 use crate::error::Failure;
@@ -58,10 +58,6 @@ pub struct ConvergeArguments {
 }
 
 /// Makes the study, writes its files and prints its findings.
-///
-/// # Errors
-/// Options contradict each other, the system cannot be read, files cannot be written, or a
-/// collision or the run cannot be computed.
 pub fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     let ConvergeArguments { system, out, threads, .. } = arguments;
     if let Some(path) = system {
@@ -79,25 +75,28 @@ pub fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
 }
 
 /// The collisions of the options, or the usual ones.
-fn collisions(arguments: &ConvergeArguments) -> Result<Settings, Failure> {
+fn collisions(arguments: &ConvergeArguments) -> Result<ConvergenceSettings, Failure> {
     let ConvergeArguments { kappa, psi, ratio, collision, .. } = *arguments;
     let CollisionArguments { mu, alpha, damping, e_n } = collision;
     let settings = if [kappa, psi, ratio, mu, alpha].iter().all(Option::is_none) {
-        let usual = Settings::usual(collision.damping(Law::PAPER)?);
+        let usual = ConvergenceSettings::usual(collision.damping(Law::PAPER)?);
         usual.map_err(|invalid| Failure::Usage(invalid.to_string()))?
     } else {
         let given = Given { kappa, psi, ratio, mu, alpha, damping, e_n, ..Given::default() };
-        Settings { contacts: vec![contact(&given)?] }
+        ConvergenceSettings { contacts: vec![contact(&given)?] }
     };
     settings.validate().map_err(study::refused)?;
     Ok(settings)
 }
 
 /// The run of a system of one's own.
-fn own_system(path: &Path, given: &GivenArguments) -> Result<own_system::Settings, Failure> {
+fn own_system(
+    path: &Path,
+    given: &GivenArguments,
+) -> Result<own_system::OwnSystemSettings, Failure> {
     let SystemRun { name, system, runnable, end, .. } =
         SystemRun::new(path, &given.set, given.end)?;
-    Ok(own_system::Settings { name, system, runnable, end })
+    Ok(own_system::OwnSystemSettings { name, system, runnable, end })
 }
 
 /// What `converge --help` says first.

@@ -32,9 +32,6 @@ pub struct ExploreArguments {
 }
 
 /// Writes the page, and opens it in the browser.
-///
-/// # Errors
-/// The system cannot be read, the page cannot be written, or no browser starts.
 pub fn run(arguments: &ExploreArguments) -> Result<(), Failure> {
     let view = match (&arguments.system, &arguments.link) {
         (Some(system), _) => view_of_system(&read(system)?.1),

@@ -13,7 +13,7 @@ use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Law, presets};
 use stickslip_plane::Range;
-use stickslip_practice::fit::{self, Bodies, Free, Settings, Values};
+use stickslip_practice::fit::{self, FitSettings, FittedBodies, Free, Values};
 use stickslip_practice::inputs::Code;
 
 use crate::error::Failure;
@@ -113,10 +113,6 @@ pub struct FitArguments {
 }
 
 /// Makes the fit, draws it if that is wanted, and prints it.
-///
-/// # Errors
-/// An option is missing or out of range, a file cannot be used, an impact cannot be computed, there
-/// is nothing to draw, or the picture or standard output cannot be written.
 pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
     let settings = settings(arguments)?;
     let plot = arguments.plot.as_ref();
@@ -140,7 +136,7 @@ pub fn run(arguments: &FitArguments) -> Result<(), Failure> {
 }
 
 /// The data, and what is fitted.
-fn settings(arguments: &FitArguments) -> Result<Settings, Failure> {
+fn settings(arguments: &FitArguments) -> Result<FitSettings, Failure> {
     let FitArguments { data, bodies: file, free, .. } = arguments;
     if is_standard_input(data) && file.as_deref().is_some_and(is_standard_input) {
         let expected = "expected a file for one of them";
@@ -163,7 +159,7 @@ fn settings(arguments: &FitArguments) -> Result<Settings, Failure> {
         return Err(Failure::Usage(format!("--speed = {speed:?} is out of range; {expected}")));
     }
     let scaled = bodies.are_scaled();
-    let mut settings = Settings::new(bodies, measured::read(data, arguments.speed, scaled)?);
+    let mut settings = FitSettings::new(bodies, measured::read(data, arguments.speed, scaled)?);
     settings.free.clone_from(free);
     for (index, (free, range)) in arguments.range.iter().enumerate() {
         let name = free.name();
@@ -197,15 +193,15 @@ fn permits(name: Option<&str>) -> Result<(), Failure> {
     }
 }
 
-fn in_file(file: &Path, name: Option<&str>) -> Result<Bodies, Failure> {
+fn in_file(file: &Path, name: Option<&str>) -> Result<FittedBodies, Failure> {
     let law = law::by_name_or_file(name)?;
     let (sphere, pair) = bodies::read_sphere_and_pair(file, law)?;
     law::permits(name, "tangential damping", pair.tangential_damping())?;
-    Ok(Bodies::of_sphere(&sphere, pair))
+    Ok(FittedBodies::of_sphere(&sphere, pair))
 }
 
 /// Bodies of which nothing but α is known.
-fn scaled(arguments: &FitArguments, law: Law) -> Result<Bodies, Failure> {
+fn scaled(arguments: &FitArguments, law: Law) -> Result<FittedBodies, Failure> {
     let FitArguments { kappa, mu, damping, free, .. } = arguments;
     let fixed = |name: &str, value: Option<f64>, which: Free| match (value, free.contains(&which)) {
         (Some(value), true) => Err(Failure::Usage(format!(
@@ -239,7 +235,7 @@ fn scaled(arguments: &FitArguments, law: Law) -> Result<Bodies, Failure> {
     let alpha = reduction(None, arguments.alpha).alpha;
     Contact::new(values.kappa, 1.0, values.damping)
         .and_then(|contact| contact.with_law(law, values.tangential_damping))
-        .and_then(|_| Bodies::scaled(law, alpha, &values))
+        .and_then(|_| FittedBodies::scaled(law, alpha, &values))
         .map_err(|invalid| Failure::Usage(invalid.to_string()))
 }
 
@@ -263,7 +259,7 @@ fn free(text: &str) -> Result<Free, String> {
 fn named_range(text: &str) -> Result<(Free, Range), String> {
     let (name, ends) =
         text.split_once('=').ok_or("no name; expected NAME=LO:HI, such as kappa=1:80")?;
-    Ok((free(name)?, range::parse(ends).map_err(|problem| problem.to_string())?))
+    Ok((free(name)?, range::parse(ends)?))
 }
 
 /// What `fit --help` says first.

@@ -111,15 +111,11 @@ impl VelocityArguments {
     }
 }
 
-fn read(quantity: &Quantity, text: &str) -> Result<f64, parameter::BadValue> {
+fn read(quantity: &Quantity, text: &str) -> Result<f64, String> {
     parameter::quantity(quantity, text)
 }
 
 /// Computes one impact or those of a file.
-///
-/// # Errors
-/// Options contradict each other, a file or standard output cannot be used, or an impact cannot be
-/// computed.
 pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     let ImpactArguments { file, bodies, .. } = arguments;
     let name = arguments.law.as_deref();
@@ -221,18 +217,12 @@ struct Engines<'a> {
 
 impl<'a> Engines<'a> {
     /// The engines that options choose.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: a tolerance would have no effect.
     fn new(name: Option<&'a str>, law: Law, method: &MethodArguments) -> Result<Self, Failure> {
         let engine = |damping| method.engine((law, damping));
         Ok(Self { name, engines: [engine(0.0)?, engine(1.0)?] })
     }
 
     /// The engine for an encounter.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: the law has no tangential damping.
     fn of(&self, encounter: &Encounter) -> Result<Engine, Failure> {
         let damping = encounter.contact().tangential_damping();
         law::permits(self.name, "tangential damping", damping)?;

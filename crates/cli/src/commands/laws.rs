@@ -16,7 +16,7 @@ use stickslip_model::presets::{self, Preset};
 use stickslip_model::restitution::{self, Keyword, Restitution};
 use stickslip_reproduction::ReproductionError;
 use stickslip_reproduction::figures::Section;
-use stickslip_studies::contact_laws::{self, Settings};
+use stickslip_studies::contact_laws::{self, ContactLawSettings};
 
 use crate::error::Failure;
 use crate::output::console::{print, say};
@@ -71,10 +71,6 @@ pub struct LawsArguments {
 }
 
 /// Prints all laws, or one; or computes what they do, and writes a page that shows it.
-///
-/// # Errors
-/// No law has this name, options contradict each other, a collision cannot be computed, or an
-/// output cannot be written.
 pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
     if let Some(out) = &arguments.out {
         let settings = settings(arguments);
@@ -142,10 +138,10 @@ struct OfLaw<'a> {
 }
 
 /// The window and the dampings of the maps.
-fn settings(arguments: &LawsArguments) -> Settings {
+fn settings(arguments: &LawsArguments) -> ContactLawSettings {
     let LawsArguments { damping, tangential_damping, cells, .. } = *arguments;
-    let usual = Settings::default();
-    Settings {
+    let usual = ContactLawSettings::default();
+    ContactLawSettings {
         damping: damping.unwrap_or(usual.damping),
         tangential_damping: tangential_damping.unwrap_or(usual.tangential_damping),
         cells: cells.map_or(usual.cells, usize::from),
@@ -163,10 +159,7 @@ struct Entry<'a> {
 
 /// Computes what the laws do, and writes the page and its data into `directory`. The path of the
 /// page is returned.
-///
-/// # Errors
-/// A collision cannot be computed, or a file cannot be written.
-pub fn write_page(settings: &Settings, directory: &Path) -> Result<PathBuf, Failure> {
+pub fn write_page(settings: &ContactLawSettings, directory: &Path) -> Result<PathBuf, Failure> {
     let bar = Bar::steps();
     let computed = contact_laws::run(settings, &|progress| bar.report(progress));
     drop(bar);

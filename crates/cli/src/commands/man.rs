@@ -23,9 +23,6 @@ pub struct ManArguments {
 }
 
 /// Prints one page with all commands, or writes a page for each of them.
-///
-/// # Errors
-/// The pages cannot be written.
 pub fn run(arguments: &ManArguments) -> Result<(), Failure> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();

@@ -105,9 +105,6 @@ pub enum MapFormat {
 
 impl MapFormat {
     /// The format that the name of the file `out` tells.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: the name tells none.
     pub fn of(out: &Path) -> Result<Self, Failure> {
         match out.extension().and_then(|extension| extension.to_str()) {
             Some("npz") => Ok(Self::Npz),

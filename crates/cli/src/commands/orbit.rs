@@ -43,10 +43,6 @@ pub struct OrbitArguments {
 }
 
 /// Finds the orbit, writes what is wanted, and prints it.
-///
-/// # Errors
-/// The system cannot be read, options do not fit it, there is no orbit, or a file or standard
-/// output cannot be written.
 pub fn run(arguments: &OrbitArguments) -> Result<(), Failure> {
     let OrbitArguments { guess, format, out, plot } = arguments;
     let (out, plot) = (out.as_deref(), plot.as_ref());

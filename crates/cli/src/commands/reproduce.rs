@@ -11,7 +11,7 @@ use stickslip_files::output::file::write;
 use stickslip_files::output::json;
 use stickslip_files::output::study::write_study;
 use stickslip_model::Engine;
-use stickslip_plane::atlas::Document;
+use stickslip_plane::atlas::AtlasDocument;
 use stickslip_reproduction::figures::{Content, DataFile, Reproduction, Section};
 use stickslip_reproduction::statements::{COUNT, Spring};
 use stickslip_studies::contact_laws;
@@ -90,9 +90,6 @@ pub fn run(arguments: &ReproduceArguments) -> Result<(), Failure> {
 
 /// Computes all parts, writes the files of each part as soon as it is done, and the page at the
 /// end.
-///
-/// # Errors
-/// As of [`run`].
 fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Failure> {
     prepare(out)?;
     let pool = arguments.threads.pool()?;
@@ -106,8 +103,8 @@ fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Fa
         write_section(&section, out)?;
         sections.push(section);
     }
-    let usual = contact_laws::Settings::default();
-    let laws = contact_laws::Settings { cells: cells.min(usual.cells), ..usual };
+    let usual = contact_laws::ContactLawSettings::default();
+    let laws = contact_laws::ContactLawSettings { cells: cells.min(usual.cells), ..usual };
     say(format_args!("beside it: {}", contact_laws::TITLE));
     pool.install(|| write_page(&laws, out))?;
     let page = out.join("index.html");
@@ -117,7 +114,7 @@ fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Fa
     write(&page, page::html(&sections).as_bytes())?;
     say(format_args!("everything is on {}", page.display()));
     let objection = sections.into_iter().flat_map(|section| section.objections).next();
-    objection.map_or(Ok(()), |objection| Err(Failure::Objection(Box::new(objection))))
+    objection.map_or(Ok(()), |objection| Err(Failure::Objection(objection)))
 }
 
 /// Writes all files of a part into `directory`, each of them at once or not at all.
@@ -128,7 +125,7 @@ fn write_section(section: &Section, directory: &Path) -> Result<(), Failure> {
             Content::Map(sweep) => {
                 npz::archive(&sweep.grid, &Engine::Exact, &sweep.results, &version::program())
             }
-            Content::Atlas(atlas) => json::sealed_line(&Document::new(atlas)),
+            Content::Atlas(atlas) => json::sealed_line(&AtlasDocument::new(atlas)),
         };
         write(&path, &bytes.map_err(|error| Failure::output(&path, error))?)?;
     }

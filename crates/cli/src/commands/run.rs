@@ -6,7 +6,6 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 use stickslip_expression::{Recording, System, outcome_name};
 use stickslip_files::output::csv::CsvFile;
@@ -89,10 +88,6 @@ pub struct RunArguments {
 }
 
 /// Runs the system, writes what is wanted, and prints how it ended.
-///
-/// # Errors
-/// The system cannot be read, options do not fit it, the run fails, or a file or standard output
-/// cannot be written.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let RunArguments { set, method, events, course, plot, .. } = arguments;
     let (events, course, plot) = (events.as_deref(), course.as_deref(), plot.as_ref());
@@ -149,17 +144,6 @@ pub fn outcome(outcome: Outcome) -> (&'static str, Option<f64>) {
     (outcome_name(outcome), accumulation)
 }
 
-#[derive(Serialize)]
-struct Event {
-    time: f64,
-    #[serde(rename = "event")]
-    label: String,
-    from: String,
-    to: String,
-    before: Map<String, Value>,
-    after: Map<String, Value>,
-}
-
 /// The run as JSON.
 fn document(run: &SystemRun, found: &Recording) -> Value {
     let system = &run.system;
@@ -174,18 +158,17 @@ fn document(run: &SystemRun, found: &Recording) -> Value {
         .zip(&run.parameters)
         .map(|(parameter, &value)| (parameter.name.clone(), json!(value)))
         .collect();
-    let events: Vec<Event> = found
-        .events
-        .iter()
-        .map(|event| Event {
-            time: event.s,
-            label: label(system, event),
-            from: name(event.from),
-            to: name(event.to),
-            before: state(&event.before),
-            after: state(&event.after),
+    let events = found.events.iter().map(|event| {
+        json!({
+            "time": event.s,
+            "event": label(system, event),
+            "from": name(event.from),
+            "to": name(event.to),
+            "before": state(&event.before),
+            "after": state(&event.after),
         })
-        .collect();
+    });
+    let events: Vec<Value> = events.collect();
     let rest = |it: &Rest<usize>| json!({ "time": it.s, "error": it.error, "from": name(it.from), "to": name(it.to) });
     let rests: Vec<Value> = found.rests.iter().map(rest).collect();
     let (outcome, accumulation) = outcome(found.run.outcome);

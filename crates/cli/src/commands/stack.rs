@@ -10,9 +10,9 @@ use stickslip_files::input::{number, range};
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::Frame;
+use stickslip_plane::atlas::{AtlasError, Frame};
 use stickslip_plane::progress::InParallel;
-use stickslip_plane::stack::{DampingStackError, StackDocument, damped, stack};
+use stickslip_plane::stack::{damped, stack};
 use stickslip_tracer::{Stack, StackOptions, Watch};
 
 use crate::error::Failure;
@@ -112,10 +112,11 @@ fn collisions(arguments: &StackArguments) -> Result<(), Failure> {
     let file = OutputFile::create(out)?;
     let made = arguments.threads.with_steps(|report| stack(frame, damping, tolerance, report))?;
     let made = made.map_err(|error| match error {
-        DampingStackError::Dampings { .. } => refused(error),
-        DampingStackError::Atlas { source, .. } => source.into(),
+        AtlasError::Dampings { .. } => refused(error),
+        AtlasError::Layer { source, .. } => (*source).into(),
+        error => error.into(),
     })?;
-    let mut stored = vec![write_json(file, &StackDocument::from(&made))?];
+    let mut stored = vec![write_json(file, &made.document())?];
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::stack::draw(&made)))?);
     }

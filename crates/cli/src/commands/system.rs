@@ -20,9 +20,6 @@ pub struct SystemArguments {
 }
 
 /// Prints what a system consists of, or its text in the usual form.
-///
-/// # Errors
-/// It cannot be read, or standard output cannot be written.
 pub fn run(arguments: &SystemArguments) -> Result<(), Failure> {
     let (system, text) = read(&arguments.system)?;
     // A text that reads as a system consists of words and signs.

@@ -10,7 +10,9 @@ use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::{json, table_npz};
 use stickslip_model::Law;
 use stickslip_plane::Range;
-use stickslip_practice::tables::{self, Document, Settings, Table, Verification, Window};
+use stickslip_practice::tables::{
+    self, Table, TableDocument, TableSettings, TableVerification, TableWindow,
+};
 
 use crate::error::Failure;
 use crate::output::console::{deliver, print};
@@ -87,13 +89,9 @@ pub struct TableArguments {
 }
 
 /// Makes a table, writes its files and prints what it is.
-///
-/// # Errors
-/// An option is out of range, a file has no known format or is named twice, there is no table, or
-/// its files or standard output cannot be written.
 pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
     let TableArguments { bound, regions, prefix, out, bodies, .. } = arguments;
-    let settings = Settings { window: window(arguments)?, bound: *bound, regions: *regions };
+    let settings = TableSettings { window: window(arguments)?, bound: *bound, regions: *regions };
     settings.validate().map_err(refused)?;
     let outputs: Vec<_> = out.iter().map(|out| ("--out", Some(out.as_path()))).collect();
     require_different(&outputs, &[("--bodies", bodies.as_deref())])?;
@@ -103,7 +101,7 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
     let table = arguments.threads.with_steps(|report| tables::run(&settings, report))??;
     let stored = files.into_iter().zip(formats).map(|(file, format)| {
         let content = match format {
-            TableFormat::Json => json::sealed_line(&Document::from(&table)),
+            TableFormat::Json => json::sealed_line(&TableDocument::from(&table)),
             TableFormat::Npz => table_npz::archive(&table, &version::program()),
             TableFormat::Header => {
                 table.c_header(prefix).map(String::into_bytes).map_err(io::Error::other)
@@ -117,19 +115,19 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
 }
 
 /// The window that the options give: of κ and ψ, or of velocities.
-fn window(arguments: &TableArguments) -> Result<Window, Failure> {
+fn window(arguments: &TableArguments) -> Result<TableWindow, Failure> {
     let TableArguments { kappa, psi, damping, e_n, bodies, normal, tangential, .. } = arguments;
     match (bodies, normal, tangential, kappa, psi) {
         (Some(file), &Some(normal_m_per_s), &Some(tangential_m_per_s), _, _) => {
             let pair = read_pair(file, Law::PAPER)?;
-            Ok(Window::Velocities { pair, normal_m_per_s, tangential_m_per_s })
+            Ok(TableWindow::Velocities { pair, normal_m_per_s, tangential_m_per_s })
         }
         (None, _, _, &Some(kappa), &Some(psi)) => {
             let damping = match *e_n {
                 Some(e_n) => damping_for(Law::PAPER, e_n)?,
                 None => damping.unwrap_or(0.0),
             };
-            Ok(Window::Scaled { kappa, psi, damping })
+            Ok(TableWindow::Scaled { kappa, psi, damping })
         }
         // The parser of the options asks for either.
         _ => {
@@ -166,11 +164,12 @@ impl TableFormat {
 }
 
 fn summary(out: &mut dyn Write, table: &Table) -> io::Result<()> {
-    let Verification { points, largest_error, x, y, largest_error_of_eps_n } = table.verification;
+    let TableVerification { points, largest_error, x, y, largest_error_of_eps_n } =
+        table.verification;
     let [slabs, strips] = table.pieces();
     let (names, units) = match table.window {
-        Window::Scaled { .. } => (["κ", "ψ"], ""),
-        Window::Velocities { .. } => (["g_n", "g_t"], " m/s"),
+        TableWindow::Scaled { .. } => (["κ", "ψ"], ""),
+        TableWindow::Velocities { .. } => (["g_n", "g_t"], " m/s"),
     };
     let [first, second] = names;
     let normal = match table.constant_eps_n {

@@ -5,16 +5,18 @@ mod table;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use serde::Serialize;
+use serde_json::{Value, json, to_value};
 use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::range::{self, OneOrRange};
 use stickslip_files::input::source::shown;
 use stickslip_files::input::{bodies, law, number};
-use stickslip_files::output::json;
+use stickslip_files::output::json::lines;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Reduction};
-use stickslip_practice::time_steps::{self, Quantity, Scheme, Seconds, Settings, TimeSteps};
+use stickslip_practice::time_steps::{
+    self, Scheme, Seconds, SteppedQuantity, TimeStepSettings, TimeSteps,
+};
 
 use crate::error::Failure;
 use crate::output::console::{deliver, print};
@@ -115,13 +117,9 @@ pub struct TimestepArguments {
 }
 
 /// Measures the errors, draws them if that is wanted, and prints them.
-///
-/// # Errors
-/// An option is missing or out of range, a file cannot be used, an impact cannot be computed, or
-/// the picture or standard output cannot be written.
 pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
     let (contacts, reduction, seconds) = impacts(arguments)?;
-    let settings = Settings {
+    let settings = TimeStepSettings {
         contacts,
         steps_per_contact: arguments.steps.clone(),
         phases: usize::from(arguments.phases),
@@ -141,7 +139,7 @@ pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
         deliver([plot.write(Ok(pictures::time_steps::draw(&result)))?], "")?;
     }
     print(|out| match arguments.format {
-        Format::Json => json::lines(out, &Document::new(&result, seconds, wanted)),
+        Format::Json => lines(out, &document(&result, seconds, wanted)?),
         Format::Table => table::write(out, &result, seconds.as_ref(), wanted),
     })
 }
@@ -193,47 +191,26 @@ fn scaled(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
     Ok((contacts, reduction(arguments.mu, arguments.alpha), None))
 }
 
-/// The errors as `--format json` prints them.
-#[derive(Serialize)]
-struct Document<'a> {
-    #[serde(flatten)]
-    result: &'a TimeSteps,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    seconds: Option<InSeconds>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    largest_step: Option<LargestStep>,
-}
-
-/// The times of the impact, and the step of each row.
-#[derive(Serialize)]
-struct InSeconds {
-    #[serde(flatten)]
-    times: Seconds,
-    steps_s: Vec<f64>,
-}
-
-/// The largest dt/t_c for a wanted error.
-#[derive(Serialize)]
-struct LargestStep {
-    wanted: f64,
-    eps_t: Option<f64>,
-    eps_n: Option<f64>,
-    energy: Option<f64>,
-}
-
-impl<'a> Document<'a> {
-    fn new(result: &'a TimeSteps, seconds: Option<Seconds>, wanted: Option<f64>) -> Self {
-        let seconds = seconds.map(|times| {
-            let steps = result.rows.iter().map(|row| times.step_s(row.steps_per_contact));
-            InSeconds { times, steps_s: steps.collect() }
-        });
-        let largest_step = wanted.map(|wanted| {
-            let [eps_t, eps_n, energy] =
-                Quantity::ALL.map(|quantity| result.largest_step(quantity, wanted));
-            LargestStep { wanted, eps_t, eps_n, energy }
-        });
-        Self { result, seconds, largest_step }
+/// The errors as `--format json` prints them: with the times of the impact and the step of each
+/// row, and the largest dt/t_c for a wanted error.
+fn document(
+    result: &TimeSteps,
+    seconds: Option<Seconds>,
+    wanted: Option<f64>,
+) -> serde_json::Result<Value> {
+    let mut document = to_value(result)?;
+    if let Some(times) = seconds {
+        let steps = result.rows.iter().map(|row| times.step_s(row.steps_per_contact));
+        document["seconds"] = to_value(times)?;
+        document["seconds"]["steps_s"] = steps.collect();
     }
+    if let Some(wanted) = wanted {
+        let [eps_t, eps_n, energy] =
+            SteppedQuantity::ALL.map(|quantity| result.largest_step(quantity, wanted));
+        document["largest_step"] =
+            json!({ "wanted": wanted, "eps_t": eps_t, "eps_n": eps_n, "energy": energy });
+    }
+    Ok(document)
 }
 
 /// Reads the name of a scheme.

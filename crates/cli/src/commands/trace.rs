@@ -10,7 +10,7 @@ use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Atlas, Document, Frame, geojson};
+use stickslip_plane::atlas::{self, Atlas, AtlasDocument, Frame, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{Surveyor, Watch};
@@ -120,13 +120,13 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
         (verified, gained)
     })?;
     let (verified, gained) = (verified?, gained.transpose()?);
-    let mut stored = vec![write_json(file, &Document::new(&verified))?];
+    let mut stored = vec![write_json(file, &AtlasDocument::new(&verified))?];
     if let Some(map) = map {
         let line = json::line(&geojson(&verified)).map_err(|error| map.failure(error))?;
         stored.push(map.finish(&line)?);
     }
     if let (Some(file), Some(gained)) = (gaining_file, &gained) {
-        stored.push(write_json(file, &gaining::Document::from(gained))?);
+        stored.push(write_json(file, &gained.document())?);
     }
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::atlas::draw(&verified)))?);
@@ -160,9 +160,7 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
     let (psi, ratio) = match impact {
         ImpactRange::Psi(psi) => (psi, None),
         ImpactRange::Ratio(ratio) => {
-            let psi = |end| {
-                reduced(&ratio.reduction, end).map_err(|error| Failure::Usage(error.to_string()))
-            };
+            let psi = |end| reduced(&ratio.reduction, end).map_err(Failure::Usage);
             let Range { low, high } = ratio.range;
             (Range { low: psi(low)?, high: psi(high)? }, Some(ratio))
         }

@@ -9,9 +9,6 @@ use crate::error::Failure;
 
 /// Writes results to standard output. If its reader has gone away, that is not a failure: the
 /// reader has seen enough.
-///
-/// # Errors
-/// [`Failure::Stdout`]: writing fails for another reason.
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {
@@ -22,9 +19,6 @@ pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
 
 /// Gives files their names, and says on standard error what was `found`, which may be nothing, and
 /// which files have it.
-///
-/// # Errors
-/// [`Failure::File`]: a file cannot be renamed.
 pub fn deliver(
     files: impl IntoIterator<Item = StoredFile>,
     found: impl Display,

@@ -9,9 +9,6 @@ use stickslip_solver::Statistics;
 const DIGITS: usize = 10;
 
 /// Writes `collision` as tables.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn write(
     out: &mut dyn Write,
     engine: &Engine,
@@ -83,9 +80,6 @@ pub fn describe(engine: &Engine) -> String {
 }
 
 /// Writes the contact law, if it is not the paper's.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn law(out: &mut dyn Write, contact: &Contact) -> io::Result<()> {
     /// A start whose tangential force differs by less than this part from its limit is worth a
     /// line.
@@ -148,9 +142,6 @@ fn entry(name: &str, tangential: f64, normal: f64) -> [String; 3] {
 }
 
 /// Writes a blank line and the work of the integrator.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn work(out: &mut dyn Write, statistics: &Statistics) -> io::Result<()> {
     writeln!(out)?;
     pairs(
@@ -169,18 +160,12 @@ pub fn work(out: &mut dyn Write, statistics: &Statistics) -> io::Result<()> {
 }
 
 /// Writes names on the left, with their values after them.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn pairs(out: &mut dyn Write, lines: &[(&str, String)]) -> io::Result<()> {
     let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     lines.iter().try_for_each(|(name, value)| writeln!(out, "{name:<width$}  {value}"))
 }
 
 /// Writes columns: the first is aligned to the left, the others to the right.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn aligned<const N: usize>(out: &mut dyn Write, rows: &[[String; N]]) -> io::Result<()> {
     let width =
         |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);

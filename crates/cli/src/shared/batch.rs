@@ -60,9 +60,6 @@ pub struct BatchFiles<'a> {
 
 impl BatchArguments {
     /// The files that the options name, beside other inputs; `None` without a batch.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: an output is an input, or the other output, or there is no batch for it.
     pub fn files(&self, inputs: &[Named]) -> Result<Option<BatchFiles<'_>>, Failure> {
         let Some(input) = &self.batch else {
             // Beside an argument that excludes --batch, the parser does not ask for it.
@@ -98,9 +95,6 @@ pub trait Work: Sync {
 
     /// Writes the results of a case, and its switches if they are `wanted`, with its number.
     /// Returns whether everything could be computed, which `status` says too.
-    ///
-    /// # Errors
-    /// The reason why there are no results. Nothing is written then.
     fn write(
         &self,
         case: &Self::Case,

@@ -34,9 +34,6 @@ pub struct CollisionArguments {
 
 impl CollisionArguments {
     /// The scaled damping that the options give; without them 0.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: no damping of the law has the coefficient of restitution.
     pub fn damping(&self, law: Law) -> Result<f64, Failure> {
         match self.e_n {
             Some(e_n) => damping_for(law, e_n),
@@ -46,20 +43,14 @@ impl CollisionArguments {
 }
 
 /// The scaled damping with which a law has a coefficient of normal restitution.
-///
-/// # Errors
-/// [`Failure::Usage`]: there is none.
 pub fn damping_for(law: Law, e_n: f64) -> Result<f64, Failure> {
     restitution::damping(law, e_n).map_err(|error| Failure::Usage(format!("--e-n: {error}")))
 }
 
 /// The parameters of the collision that options give.
-///
-/// # Errors
-/// [`Failure::Usage`]: the options do not make a collision.
 pub fn contact(given: &Given) -> Result<Contact, Failure> {
     let recipe = Recipe::new(given, |_| None).map_err(refused)?;
-    recipe.contact(|_| &[]).map_err(|error| Failure::Usage(error.to_string()))
+    recipe.contact(|_| &[]).map_err(Failure::Usage)
 }
 
 /// An interval of ψ or of the impact ratio.
@@ -71,10 +62,6 @@ pub enum ImpactRange {
 }
 
 /// The intervals of κ and of ψ or the impact ratio that options give.
-///
-/// # Errors
-/// [`Failure::Usage`]: κ is missing, exactly one of ψ and the ratio is not given, or μ or α would
-/// have no effect.
 pub fn window(
     kappa: Option<Range>,
     psi_or_ratio: (Option<Range>, Option<Range>),

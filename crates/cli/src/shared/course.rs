@@ -59,9 +59,6 @@ pub struct CourseArguments {
 
 impl CourseArguments {
     /// Where the course is written, beside other outputs and inputs; `None` if it is not wanted.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: the file is one of the others.
     pub fn file(&self, others: &[Named], inputs: &[Named]) -> Result<Option<Course<'_>>, Failure> {
         let Some(path) = &self.course else { return Ok(None) };
         require_different(&[others, &[("--course", Some(&**path))]].concat(), inputs)?;
@@ -84,17 +81,11 @@ pub struct Course<'a> {
 
 impl Course<'_> {
     /// Makes sure that the file can be written, before there is work to lose.
-    ///
-    /// # Errors
-    /// [`Failure::File`]: the file cannot be created.
     pub fn probe(self) -> Result<(), Failure> {
         Ok(CsvFile::probe(self.path)?)
     }
 
     /// Writes the course of `collision` in scaled variables, all but the name of the file.
-    ///
-    /// # Errors
-    /// [`Failure::File`]: it cannot be written.
     pub fn scaled(self, collision: &Collision, history: &History) -> Result<StoredFile, Failure> {
         warn(collision, history);
         let number = |snapshot: &Snapshot| {
@@ -108,9 +99,6 @@ impl Course<'_> {
 
     /// Writes the course of `collision`, that of `encounter`, in SI units, all but the name of the
     /// file.
-    ///
-    /// # Errors
-    /// [`Failure::File`]: it cannot be written.
     pub fn in_si(
         self,
         encounter: &Encounter,

@@ -17,9 +17,6 @@ use crate::error::Failure;
 pub type Named<'a> = (&'a str, Option<&'a Path>);
 
 /// Refuses an output that is the same file as an input, or as an output before it.
-///
-/// # Errors
-/// [`Failure::Usage`] names the two options.
 pub fn require_different<'a>(outputs: &[Named<'a>], inputs: &[Named<'a>]) -> Result<(), Failure> {
     let given = |named: &[Named<'a>]| -> Vec<_> {
         named.iter().filter_map(|&(option, path)| Some((option, path?))).collect()
@@ -39,9 +36,6 @@ pub fn require_different<'a>(outputs: &[Named<'a>], inputs: &[Named<'a>]) -> Res
 }
 
 /// Refuses two inputs that are both standard input.
-///
-/// # Errors
-/// [`Failure::Usage`] names the two options.
 pub fn require_one_standard_input(one: Named<'_>, other: Named<'_>) -> Result<(), Failure> {
     let is_standard = |(_, path): Named<'_>| path.is_some_and(is_standard_input);
     if !(is_standard(one) && is_standard(other)) {
@@ -68,9 +62,6 @@ pub fn plotted(plot: Option<&PictureFile>) -> Named<'_> {
 }
 
 /// Writes a document as JSON on one line, with digests, completely except for the name of the file.
-///
-/// # Errors
-/// [`Failure::File`]: the file cannot be written.
 pub fn write_json(file: OutputFile, content: &impl Serialize) -> Result<StoredFile, Failure> {
     let line = json::sealed_line(content).map_err(|error| file.failure(error))?;
     Ok(file.finish(&line)?)

@@ -24,10 +24,6 @@ pub struct LawArguments {
 
 impl LawArguments {
     /// The law that the options choose, a name or otherwise a file, and the tangential damping.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: the law has no tangential damping. [`Failure::File`]: there is neither
-    /// such a name nor such a file, or the file does not describe a law.
     pub fn chosen(&self) -> Result<(Law, f64), Failure> {
         let Self { law: name, tangential_damping } = self;
         let damping = tangential_damping.unwrap_or(0.0);

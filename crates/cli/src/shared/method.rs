@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use stickslip_files::input::number;
-use stickslip_model::{Engine, InvalidChoice, Law, Tolerances};
+use stickslip_model::{Engine, GivenValue, Law, Tolerances};
 use stickslip_solver::{InvalidValue, Options};
 
 use crate::error::Failure;
@@ -42,20 +42,14 @@ pub enum Method {
 
 impl MethodArguments {
     /// The engine that the options choose for collisions with a law and a tangential damping.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: a tolerance would have no effect.
     pub fn engine(&self, law: (Law, f64)) -> Result<Engine, Failure> {
         let Self { method, rtol, atol } = *self;
         let method = method.unwrap_or(Method::Auto).to_possible_value();
         let name = method.as_ref().map_or("", |value| value.get_name());
         Engine::chosen_for(law, name, rtol, atol).map_err(|invalid| {
-            Failure::Usage(match invalid {
-                InvalidChoice::Unused { name, value } => format!(
-                    "--{name} {value:?} has no effect with --method exact, which has no \
-                     tolerances; expected with dop853 and dopri5 only"
-                ),
-                InvalidChoice::Value(invalid) => invalid.to_string(),
+            Failure::Usage(match invalid.value {
+                GivenValue::Phrase(_) => format!("--{invalid}"),
+                _ => invalid.to_string(),
             })
         })
     }

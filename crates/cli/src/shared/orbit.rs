@@ -82,9 +82,6 @@ pub struct FoundOrbit {
 
 impl GuessArguments {
     /// Finds the orbit.
-    ///
-    /// # Errors
-    /// [`Failure`]: the system cannot be read, options do not fit it, or there is no orbit.
     pub fn find(&self) -> Result<FoundOrbit, Failure> {
         let (system, _) = read(&self.system)?;
         if let Some(path) = &self.near {

@@ -15,9 +15,6 @@ use crate::output::console::{print, say};
 
 /// Makes a study with its pictures, writes its files into the directory `out`, and prints its
 /// findings.
-///
-/// # Errors
-/// Files cannot be written, which is tried first, or `make` fails.
 pub fn run(
     out: &Path,
     threads: ThreadsArguments,

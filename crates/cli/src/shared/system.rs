@@ -79,9 +79,6 @@ pub struct Axis {
 }
 
 /// Reads a system, and its text.
-///
-/// # Errors
-/// [`Failure::File`]: it cannot be read, or is no system.
 pub fn read(path: &Path) -> Result<(System, String), Failure> {
     let text = source::read(path, MOST_TEXT)?;
     let shown = source::shown(path);
@@ -99,9 +96,6 @@ pub fn title(path: &Path) -> String {
 }
 
 /// The values of the parameters of a system, some of which are set.
-///
-/// # Errors
-/// [`Failure::Usage`]: there is no such parameter.
 pub fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     let mut values = system.values();
     for (name, value) in set {
@@ -111,9 +105,6 @@ pub fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failur
 }
 
 /// The place of a parameter.
-///
-/// # Errors
-/// [`Failure::Usage`]: there is no such parameter.
 pub fn place(system: &System, option: &str, name: &str) -> Result<usize, Failure> {
     let place = system.parameters.iter().position(|it| it.name == *name);
     place.ok_or_else(|| {
@@ -124,9 +115,6 @@ pub fn place(system: &System, option: &str, name: &str) -> Result<usize, Failure
 }
 
 /// Refuses runs without an end.
-///
-/// # Errors
-/// [`Failure::Usage`]: nothing ends the runs.
 fn require_end(system: &System, end: Option<f64>) -> Result<(), Failure> {
     if end.is_none() && system.end.is_none() && !system.ends_itself() {
         let message = "the system says no end; expected --end, `end = …`, or a rule -> end";
@@ -153,9 +141,6 @@ pub struct SystemRun {
 impl SystemRun {
     /// The run of the system in a file, with some parameters set, and with another end if one is
     /// given.
-    ///
-    /// # Errors
-    /// [`Failure`]: the system cannot be read, or options do not fit it.
     pub fn new(path: &Path, set: &[(String, f64)], end: Option<f64>) -> Result<Self, Failure> {
         let (system, _) = read(path)?;
         let parameters = values(&system, set)?;
@@ -189,9 +174,6 @@ pub struct SystemPlane {
 
 impl SystemPlane {
     /// The plane that `arguments` describe, if they name a system.
-    ///
-    /// # Errors
-    /// [`Failure`]: the system cannot be read, or options do not fit it.
     pub fn new(arguments: &PlaneArguments) -> Result<Option<Self>, Failure> {
         let PlaneArguments { system, x, y, given: GivenArguments { set, end }, .. } = arguments;
         let (Some(path), Some(x), Some(y)) = (system, x, y) else { return Ok(None) };
@@ -247,9 +229,6 @@ impl SystemPlane {
     }
 
     /// The options of an atlas.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: the tolerance is out of its range.
     pub fn atlas_options(&self, tolerance: Option<f64>) -> Result<AtlasOptions, Failure> {
         let tolerance = tolerance.unwrap_or(1e-9);
         let most = 1e-3 * self.window.extent().min();

@@ -28,17 +28,11 @@ pub struct ThreadsArguments {
 
 impl ThreadsArguments {
     /// The threads, as one pool.
-    ///
-    /// # Errors
-    /// [`Failure::Threads`]: they cannot be started.
     pub fn pool(self) -> Result<ThreadPool, Failure> {
         pool(self.threads)
     }
 
     /// Does `work` on the threads, with a progress bar of its steps.
-    ///
-    /// # Errors
-    /// As of [`Self::pool`].
     pub fn with_steps<T: Send>(
         self,
         work: impl FnOnce(Report<'_>) -> T + Send,
@@ -55,10 +49,6 @@ pub fn threads() -> RangedI64ValueParser<u16> {
 }
 
 /// A pool of `count` threads, of as many as the environment says, or of one thread for each core.
-///
-/// # Errors
-/// [`Failure::Threads`]: the threads cannot be started. [`Failure::Usage`]: the environment names
-/// no number of threads.
 pub fn pool(count: Option<u16>) -> Result<ThreadPool, Failure> {
     let count = match count {
         Some(count) => usize::from(count),
@@ -69,9 +59,6 @@ pub fn pool(count: Option<u16>) -> Result<ThreadPool, Failure> {
 
 /// The number of threads that the environment names with `value`; 0, which stands for one thread
 /// for each core, if it is empty.
-///
-/// # Errors
-/// [`Failure::Usage`]: it is not a whole number from 1 to [`MOST`].
 fn in_environment(value: &OsStr) -> Result<usize, Failure> {
     if value.is_empty() {
         return Ok(0);

@@ -20,7 +20,6 @@ impl Contact {
     /// assert_eq!(contact.start_layer(), Some(81.0));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn start_layer(&self) -> Option<f64> {
         if self.obeys_paper() { None } else { GeneralContact::new(*self).start_layer() }
     }
@@ -44,7 +43,6 @@ impl Contact {
     /// assert!(margin(0.755)?.ok_or("none")? < 0.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn start_margin(&self) -> Option<f64> {
         if self.obeys_paper() { None } else { GeneralContact::new(*self).beginning_margins()[0] }
     }

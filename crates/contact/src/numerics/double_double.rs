@@ -10,7 +10,6 @@ pub struct DoubleDouble(pub f64, pub f64);
 impl DoubleDouble {
     /// The exact sum a + b.
     #[inline]
-    #[must_use]
     pub fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let part = high - a;
@@ -19,7 +18,6 @@ impl DoubleDouble {
 
     /// The exact product a·b.
     #[inline]
-    #[must_use]
     pub fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         Self(high, a.mul_add(b, -high))
@@ -27,7 +25,6 @@ impl DoubleDouble {
 
     /// The sum with `other`.
     #[inline]
-    #[must_use]
     pub fn plus(self, other: Self) -> Self {
         let Self(high, low) = Self::sum(self.0, other.0);
         Self::sum(high, low + (self.1 + other.1))
@@ -35,14 +32,12 @@ impl DoubleDouble {
 
     /// The difference from `other`.
     #[inline]
-    #[must_use]
     pub fn minus(self, other: Self) -> Self {
         self.plus(Self(-other.0, -other.1))
     }
 
     /// The product with `other`.
     #[inline]
-    #[must_use]
     pub fn times(self, other: Self) -> Self {
         let Self(high, low) = Self::product(self.0, other.0);
         Self::sum(high, low + (self.0 * other.1 + self.1 * other.0))
@@ -50,7 +45,6 @@ impl DoubleDouble {
 
     /// The product with a double.
     #[inline]
-    #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let Self(high, low) = Self::product(self.0, factor);
         Self::sum(high, self.1.mul_add(factor, low))
@@ -58,7 +52,6 @@ impl DoubleDouble {
 
     /// The quotient by `divisor`.
     #[inline]
-    #[must_use]
     pub fn over(self, divisor: Self) -> Self {
         let quotient = self.0 / divisor.0;
         let rest = (-quotient).mul_add(divisor.0, self.0) + self.1 - quotient * divisor.1;
@@ -67,7 +60,6 @@ impl DoubleDouble {
 
     /// The nearest double.
     #[inline]
-    #[must_use]
     pub fn nearest(self) -> f64 {
         self.0 + self.1
     }

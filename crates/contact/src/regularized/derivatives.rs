@@ -14,7 +14,6 @@ pub const PARAMETERS: usize = Parameter::ALL.len();
 
 impl Regularized {
     /// The equations and a state, with their derivatives along a change.
-    #[must_use]
     pub fn along(
         &self,
         y: &State<STATE>,

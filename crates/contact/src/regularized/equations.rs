@@ -87,7 +87,6 @@ impl Parameter {
 
 impl Equations<f64> {
     /// The equations of one contact.
-    #[must_use]
     pub fn new(contact: &Contact) -> Self {
         let omega = contact.kappa().sqrt();
         let scale = omega.sqrt().max(1.0);
@@ -107,7 +106,6 @@ impl Equations<f64> {
 
     /// The same equations for other numbers.
     #[inline(always)]
-    #[must_use]
     pub fn of<T: Number>(&self) -> Equations<T> {
         Equations {
             kappa: T::from(self.kappa),
@@ -129,7 +127,6 @@ impl Equations<f64> {
 
     /// The same equations with their derivatives with respect to a parameter. The units c, σ and
     /// that of V are kept constant.
-    #[must_use]
     pub fn by(&self, parameter: Option<Parameter>) -> Equations<Dual64> {
         let by_kappa = f64::from(parameter == Some(Parameter::LnKappa));
         let by_damping = f64::from(parameter == Some(Parameter::Damping));
@@ -162,7 +159,6 @@ impl Equations<f64> {
     }
 
     /// The state at the start of contact.
-    #[must_use]
     pub fn start(&self, psi: f64) -> [f64; STATE] {
         let mut y = [0.0; STATE];
         y[V] = 1.0 / self.rate.by_v;
@@ -172,7 +168,6 @@ impl Equations<f64> {
     }
 
     /// The derivative of the state at the start of contact with respect to a parameter.
-    #[must_use]
     pub fn start_by(&self, psi: f64, parameter: Parameter) -> [f64; STATE] {
         let mut y = [0.0; STATE];
         match parameter {
@@ -187,21 +182,18 @@ impl Equations<f64> {
 impl<T: Number> Equations<T> {
     /// Reduced tangential velocity w.
     #[inline(always)]
-    #[must_use]
     pub fn velocity(&self, y: &[T; STATE]) -> T {
         y[W] * self.velocity_unit
     }
 
     /// The rate v of the compression, by the components U and V.
     #[inline(always)]
-    #[must_use]
     pub fn compression_rate<const DAMPED: bool>(&self, u: T, v: T) -> T {
         if DAMPED { self.rate.by_v * v + self.rate.by_uu * (u * u) } else { v }
     }
 
     /// F/u by the components U and V. The contact ends where it vanishes.
     #[inline(always)]
-    #[must_use]
     pub fn push<const DAMPED: bool>(&self, u: T, v: T) -> T {
         let uu = u * u;
         if DAMPED { uu * self.rate.force_by_uu + self.rate.force_by_v * v } else { uu }
@@ -209,7 +201,6 @@ impl<T: Number> Equations<T> {
 
     /// The normal force and its derivatives, by the components U and V.
     #[inline(always)]
-    #[must_use]
     pub fn force<const DAMPED: bool>(&self, u: T, v: T) -> Force<T> {
         let uu = u * u;
         if DAMPED {
@@ -233,7 +224,6 @@ impl<T: Number> Equations<T> {
 
     /// The right-hand side of slip.
     #[inline(always)]
-    #[must_use]
     pub fn slip<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
         let (u, zero) = (y[U], T::from(0.0));
         let v = self.compression_rate::<DAMPED>(u, y[V]);
@@ -245,7 +235,6 @@ impl<T: Number> Equations<T> {
 
     /// The right-hand side of stick.
     #[inline(always)]
-    #[must_use]
     pub fn stick<const DAMPED: bool>(&self, y: &[T; STATE]) -> [T; STATE] {
         let (u, zero) = (y[U], T::from(0.0));
         let v = self.compression_rate::<DAMPED>(u, y[V]);
@@ -258,7 +247,6 @@ impl<T: Number> Equations<T> {
 
     /// The right-hand side of a stick phase that is not settled, with its gap.
     #[inline(always)]
-    #[must_use]
     pub fn first_stick<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
         let (u, w) = (y[U], self.velocity(y));
         let v = self.compression_rate::<DAMPED>(u, y[V]);
@@ -273,7 +261,6 @@ impl<T: Number> Equations<T> {
 
     /// dv/ds, by the components U and V.
     #[inline(always)]
-    #[must_use]
     pub fn deceleration<const DAMPED: bool>(&self, u: T, v: T) -> T {
         u * u * -2.0 * self.push::<DAMPED>(u, v)
     }
@@ -292,14 +279,12 @@ impl<T: Number> Equations<T> {
 
     /// s κ w, which the guard of slip on side s contains.
     #[inline(always)]
-    #[must_use]
     pub fn stretching(&self, side: Side, y: &[T; STATE]) -> T {
         self.kappa * side.sign() * self.velocity(y)
     }
 
     /// The right-hand side of a phase.
     #[inline(always)]
-    #[must_use]
     pub fn field<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; STATE] {
         match (phase.regime, phase.progress) {
             (Regime::Slip, _) => self.slip::<DAMPED>(phase.side, y),
@@ -311,7 +296,6 @@ impl<T: Number> Equations<T> {
     /// The values of the guards. The guard of slip is s w − dL/dt, without damping in the form that
     /// does not vanish by itself where u = 0.
     #[inline(always)]
-    #[must_use]
     pub fn guards<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; GUARDS] {
         let (u, v) = (y[U], y[V]);
         let end = if DAMPED { self.push::<true>(u, v) } else { u };
@@ -344,7 +328,6 @@ impl<T: Number> Equations<T> {
 
     /// The state with which the phase `next` begins, from the state `y` at the switch.
     #[inline(always)]
-    #[must_use]
     pub fn enter<const DAMPED: bool>(&self, next: Phase, y: &[T; STATE]) -> [T; STATE] {
         let zero = T::from(0.0);
         let spring = match next.regime {

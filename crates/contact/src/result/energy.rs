@@ -1,6 +1,6 @@
 //! The energy ledger of a collision.
 
-use super::finite::NotFinite;
+use super::NotFinite;
 
 /// The energy ledger of a collision, in reduced variables: where its energy went.
 ///
@@ -33,13 +33,11 @@ pub struct EnergyLedger {
 
 impl EnergyLedger {
     /// Tangential energy that the ledger does not explain.
-    #[must_use]
     pub fn tangential_unbalanced(&self) -> f64 {
         self.tangential_initial - self.tangential_final - self.sliding - self.spring_left
     }
 
     /// Normal energy that the ledger does not explain.
-    #[must_use]
     pub fn normal_unbalanced(&self) -> f64 {
         self.normal_initial - self.normal_final - self.damping - self.compression_left
     }

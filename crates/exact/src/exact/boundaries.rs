@@ -22,7 +22,6 @@ use super::slide::Slide;
 /// assert_eq!((above.switches.len(), below.switches.len()), (0, 2));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[must_use]
 pub fn top_boundary(kappa: f64) -> f64 {
     Slide::new(&Undamped, kappa).highest().map_or(2.0, |height| height.max(2.0))
 }
@@ -38,7 +37,6 @@ pub fn top_boundary(kappa: f64) -> f64 {
 ///
 /// assert!((exact::small_impact_boundary(4) - 3.812150).abs() < 1e-6);
 /// ```
-#[must_use]
 pub fn small_impact_boundary(n: u32) -> f64 {
     (f64::from(n) * std::f64::consts::PI / (2.0 * CONTACT_TIME)).powi(2)
 }

@@ -57,7 +57,6 @@ const SPLIT_RATE: usize = 7 * NAMES;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[must_use]
 pub fn cusps(contact: &Contact, which: &Margin) -> Vec<[Margin; 2]> {
     match graze(contact, which) {
         Some(Graze::Slip) => {
@@ -77,7 +76,6 @@ pub fn cusps(contact: &Contact, which: &Margin) -> Vec<[Margin; 2]> {
 
 /// The names of three numbers that vanish together where the boundary of `which` takes part in a
 /// swallowtail, if it can: three extrema of a stick phase merge on their zero.
-#[must_use]
 pub fn swallowtail(contact: &Contact, which: &Margin) -> Option<[Margin; 3]> {
     let (exits, k) = match graze(contact, which)? {
         Graze::Slip => {

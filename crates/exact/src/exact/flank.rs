@@ -22,7 +22,7 @@ use stickslip_contact::numerics::root::Jet;
 
 use super::moment::{At, Moment, Motion};
 use super::normal::Trajectory;
-use super::normal::roots::{along_root, root_between};
+use super::normal::{along_root, root_between};
 use super::swing::{Gap, Swing, half_swing_sign};
 
 /// Ratio of dD/dt to dq/dt below which an exit is improved. At this ratio the rounding of the angle

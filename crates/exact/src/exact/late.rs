@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use super::moment::{At, Moment};
 use super::normal::Trajectory;
-use super::normal::roots::{along_root, root_between};
+use super::normal::{along_root, root_between};
 use super::swing::{Gap, Swing, half_swing_sign};
 
 /// A half swing, with damping, on which R has its last top after the peak of the spring and after

@@ -7,17 +7,17 @@
 //! where P = κL + L̈ changes its sign. They are compiled once for each trajectory, without dynamic
 //! dispatch. A further law with a tangential spring of constant stiffness is a further trajectory.
 
-pub mod roots;
-pub mod undamped;
-pub mod viscoelastic;
-
 use std::fmt::Debug;
 
 use stickslip_contact::EnergyLedger;
 use stickslip_contact::numerics::double_double::DoubleDouble;
+use stickslip_contact::numerics::root::{Jet, bracketed};
 
 use super::moment::{At, Half, Moment, Motion, Spring};
 use super::slip::SlipPhase;
+
+pub mod undamped;
+pub mod viscoelastic;
 
 /// Number of Taylor coefficients in [`Trajectory::limit_series`].
 pub const ORDER: usize = 18;
@@ -131,4 +131,46 @@ pub trait Trajectory: Debug + Sized {
             Half::Decompression => self.near_time(at),
         }
     }
+}
+
+/// The derivatives of a function in time as derivatives in the root coordinate.
+pub fn along_root<T: Trajectory>(
+    path: &T,
+    at: &At<T::Motion>,
+    value: f64,
+    rate: f64,
+    acceleration: f64,
+) -> Jet {
+    let [time_per_root, bend] = path.time_along_root(at);
+    Jet {
+        value,
+        slope: rate * time_per_root,
+        curvature: acceleration * time_per_root * time_per_root + rate * bend,
+    }
+}
+
+/// The root between `low`, where f > 0, and `high`, where f < 0, which may be in different halves.
+pub fn root_between<T: Trajectory>(
+    path: &T,
+    mut low: Moment,
+    mut high: Moment,
+    guess: Option<Moment>,
+    f: impl Fn(&At<T::Motion>) -> Jet,
+) -> Moment {
+    if low.half != high.half {
+        let [early, late] = path.middle();
+        let middle = Moment { half: Half::Decompression, root: late };
+        if f(&path.at(middle)).value < 0.0 {
+            high = Moment { half: Half::Compression, root: early };
+        } else {
+            low = middle;
+        }
+    }
+    let half = low.half;
+    let guess = match guess {
+        Some(moment) if moment.half == half => moment.root,
+        _ => 0.5 * (low.root + high.root),
+    };
+    let root = bracketed(low.root, high.root, guess, |root| f(&path.at(Moment { half, root })));
+    Moment { half, root }
 }

@@ -114,7 +114,7 @@ impl<'a> Slip<'a> {
                     return Some(from);
                 }
                 let guess = self.excess / self.drive.value;
-                return Some(super::places::falling(&self.start, [from, to], guess, |place| {
+                return Some(super::falling(&self.start, [from, to], guess, |place| {
                     self.excess_at(place)
                 }));
             }

@@ -22,9 +22,9 @@ use stickslip_contact::Side;
 use stickslip_contact::numerics::root::{Jet, bracketed};
 
 use super::Linear;
+use super::falling;
 use super::normal::{Moment, Place, Stage};
 use super::oscillator::Oscillator;
-use super::places::falling;
 use super::slip::Drive;
 use super::unless_rounding;
 

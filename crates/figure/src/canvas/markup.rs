@@ -39,7 +39,6 @@ pub enum PieceStyle {
 /// assert_eq!((g.text, n.text, power.text), ("g", "n", "6/5"));
 /// assert_eq!((n.style, power.style), (PieceStyle::Lowered, PieceStyle::Raised));
 /// ```
-#[must_use]
 pub fn pieces(markup: &str) -> Vec<Piece<'_>> {
     let mut pieces = Vec::new();
     for (index, part) in markup.split('`').enumerate() {
@@ -54,7 +53,6 @@ pub fn pieces(markup: &str) -> Vec<Piece<'_>> {
 }
 
 /// The characters of `markup` without its marks.
-#[must_use]
 pub fn plain(markup: &str) -> String {
     pieces(markup).iter().map(|piece| piece.text).collect()
 }

@@ -67,7 +67,6 @@ const TICK: f64 = 4.0;
 
 impl Panel {
     /// The place of a point in the picture.
-    #[must_use]
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let along = self.scales.0.part(x, self.x);
         let up = self.scales.1.part(y, self.y);
@@ -75,7 +74,6 @@ impl Panel {
     }
 
     /// The point at a place in the picture: the inverse of [`Self::place`].
-    #[must_use]
     pub fn value(&self, (left, top): (f64, f64)) -> (f64, f64) {
         let along = (left - self.frame.left) / self.frame.width;
         let up = (self.frame.bottom() - top) / self.frame.height;
@@ -160,7 +158,6 @@ impl Panel {
 
     /// The power of ten that the labels of an edge leave out, to follow the name of the axis; empty
     /// if they leave out none.
-    #[must_use]
     pub fn power(&self, edge: Edge) -> String {
         match (self.scale(edge), ticks::exponent(self.range(edge))) {
             (Scale::Logarithmic, _) | (_, 0) => String::new(),

@@ -22,13 +22,11 @@ impl Rectangle {
     }
 
     /// x of the right edge.
-    #[must_use]
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
     /// y of the lower edge.
-    #[must_use]
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
@@ -47,7 +45,6 @@ pub struct Stroke {
 
 impl Stroke {
     /// A full line.
-    #[must_use]
     pub const fn full(colour: &'static str, width: f64) -> Self {
         Self { colour, width, dashes: "" }
     }

@@ -85,7 +85,6 @@ pub const KINDS: [(BoundaryKind, &str, &str); 5] = [
 ];
 
 /// The stroke of the boundaries of a kind.
-#[must_use]
 pub fn boundary(kind: BoundaryKind) -> Stroke {
     match kind {
         BoundaryKind::EndOfContact => BOUNDARY_END,
@@ -105,7 +104,6 @@ pub const PLACES: [(&[&str], &str, Stroke); 4] = [
 ];
 
 /// The kind of a boundary on which `margin` vanishes, as an index of [`PLACES`].
-#[must_use]
 pub fn place(margin: &Margin) -> usize {
     match margin.place {
         Place::End => 0,
@@ -142,26 +140,22 @@ pub const MINIMA: [Stroke; 3] = [
 pub const MISSING: Color = Color { r: 0xB0, g: 0xB0, b: 0xB0 };
 
 /// A colour from blue through white to red, for `t` from −1 to 1.
-#[must_use]
 pub fn diverging(t: f64) -> Color {
     colorous::RED_BLUE.eval_continuous(0.5 - 0.5 * t)
 }
 
 /// Colour `i` of `n` ordered colours, from light to dark.
-#[must_use]
 pub fn ordered(i: usize, n: usize) -> Color {
     let t = if n > 1 { i as f64 / (n - 1) as f64 } else { 0.0 };
     colorous::YELLOW_GREEN_BLUE.eval_continuous(0.06 + 0.94 * t)
 }
 
 /// `colour` as SVG writes it.
-#[must_use]
 pub fn hex(colour: Color) -> String {
     format!("#{colour:X}")
 }
 
 /// Black or white, whichever is readable on `colour`.
-#[must_use]
 pub fn readable_on(Color { r, g, b }: Color) -> &'static str {
     // Luma of ITU-R BT.601.
     let lightness = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);

@@ -48,7 +48,6 @@ pub struct Words<'a> {
 
 impl<'a> Words<'a> {
     /// A text of the usual colour and direction.
-    #[must_use]
     pub fn new(text: &'a str, size: f64, anchor: Anchor) -> Self {
         Self { text, size, anchor, colour: INK, upwards: false }
     }
@@ -56,27 +55,23 @@ impl<'a> Words<'a> {
 
 impl Svg {
     /// An empty picture. Browsers and assistive programs show its title.
-    #[must_use]
     pub fn new(width: f64, height: f64, title: &str) -> Self {
         let title = markup::escaped(&markup::plain(title));
         Self { width, height, title, body: String::new(), parts: Vec::new() }
     }
 
     /// The width of the picture.
-    #[must_use]
     pub fn width(&self) -> f64 {
         self.width
     }
 
     /// The height of the picture.
-    #[must_use]
     pub fn height(&self) -> f64 {
         self.height
     }
 
     /// The parts that a narrow page shows below each other, each as `viewBox` has it; none if the
     /// picture is shown as a whole.
-    #[must_use]
     pub fn parts(&self) -> Vec<String> {
         let view = |part: &Rectangle| {
             let [x, y, width, height] = [part.left, part.top, part.width, part.height].map(Px);
@@ -91,7 +86,6 @@ impl Svg {
     }
 
     /// The picture as an SVG document.
-    #[must_use]
     pub fn document(&self) -> String {
         let Self { width, height, title, body, .. } = self;
         // Some viewers drop blanks at the ends of lowered and raised words without this attribute.

@@ -30,7 +30,6 @@ const KEY: f64 = 28.0;
 /// Draws `atlas`.
 ///
 /// The legend names the kinds of boundaries, vertices and limits that are in the picture.
-#[must_use]
 pub fn draw(atlas: &Atlas) -> Svg {
     let title = title(atlas);
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
@@ -84,7 +83,6 @@ pub fn draw(atlas: &Atlas) -> Svg {
 
 /// The boundaries with points (κ, ψ), which are so close that straight lines between them look
 /// smooth.
-#[must_use]
 pub fn boundaries(atlas: &Atlas) -> Vec<(BoundaryKind, Vec<(f64, f64)>)> {
     let curves = atlas.regions.curves().iter();
     let points = |line: Vec<[f64; 2]>| line.into_iter().map(Into::into).collect();

@@ -62,7 +62,6 @@ const COLOURS: [&str; 5] = [INK, GREEN, PURPLE, ORANGE, SKY];
 const SHAPES: [Shape; 4] = [Shape::Disc, Shape::Ring, Shape::Square, Shape::Cross];
 
 /// Draws `branch`.
-#[must_use]
 pub fn draw(branch: &BranchCurve<'_>) -> Svg {
     let whole = with_specials(branch);
     let mut series = Vec::new();

@@ -32,7 +32,6 @@ pub struct ChartAxis<'a> {
 impl<'a> ChartAxis<'a> {
     /// A logarithmic axis around values above 0, with room for marks at its ends. Where there are
     /// no two values, it has any range.
-    #[must_use]
     pub fn around(name: &'a str, (low, high): (f64, f64)) -> Self {
         let room = (high / low).powf(0.02);
         let range = if low < high { (low / room, high * room) } else { (0.1, 1.0) };
@@ -86,7 +85,6 @@ const FRAME_HEIGHT: f64 = 440.0;
 const SIZE: f64 = 3.5;
 
 /// Draws `chart`.
-#[must_use]
 pub fn draw(chart: &Chart<'_>) -> Svg {
     let (x, y) = (&chart.x, &chart.y);
     let named = || {

@@ -31,7 +31,6 @@ pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
 const SI_NAMES: [&str; 3] = ["force [N]", "time [s]", "velocity of the surfaces [m/s]"];
 
 /// Draws `collision`, whose course is `history`.
-#[must_use]
 pub fn draw(collision: &Collision, history: &History) -> Svg {
     let (course, names) = scaled(collision, history);
     panels(&title(collision), &course, names)
@@ -45,7 +44,6 @@ pub fn frames(collision: &Collision, history: &History) -> impl Iterator<Item = 
 }
 
 /// Draws an impact that is not central, whose course is `history`, in SI units.
-#[must_use]
 pub fn draw_impact(report: &ImpactReport, history: &History) -> Svg {
     panels(&title(&report.collision), &in_si(report, history), SI_NAMES)
 }

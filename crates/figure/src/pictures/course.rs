@@ -48,7 +48,6 @@ impl Units {
 
 impl<'a> Course<'a> {
     /// The course `history` of `collision`, for a panel `width` pixels wide.
-    #[must_use]
     pub fn new(collision: &Collision, history: &'a History, width: f64) -> Self {
         let phases = history.phases();
         let samples = phases.flat_map(|phase| samples(collision, history, phase, width)).collect();
@@ -56,13 +55,11 @@ impl<'a> Course<'a> {
     }
 
     /// The same course, drawn in other units.
-    #[must_use]
     pub fn in_units(self, units: Units) -> Self {
         Self { units, ..self }
     }
 
     /// The same course, drawn up to a moment.
-    #[must_use]
     pub fn until(self, moment: Snapshot) -> Self {
         Self { until: Some(moment), ..self }
     }
@@ -73,13 +70,11 @@ impl<'a> Course<'a> {
     }
 
     /// The moments that are drawn; at a switch there are two.
-    #[must_use]
     pub fn samples(&self) -> &[Snapshot] {
         &self.samples
     }
 
     /// The largest normal force.
-    #[must_use]
     pub fn largest_force(&self) -> f64 {
         let most = self.samples.iter().fold(0.0_f64, |most, sample| most.max(sample.normal_force));
         self.units.force * most

@@ -37,7 +37,6 @@ pub struct Captions<'a, Label, Margin> {
 }
 
 /// Draws the atlas of a hybrid system, with the number of events in each region.
-#[must_use]
 pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, names: &RunNames) -> Svg {
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
     let (family, axes) = (&names.family, names.axes());
@@ -54,7 +53,6 @@ pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, names: &RunNames) -> Svg {
 }
 
 /// Draws an atlas in its coordinates, with linear axes. Regions in doubt have the text `?`.
-#[must_use]
 pub fn draw<Label, Margin>(
     atlas: &Atlas<Label, Margin>,
     captions: &Captions<'_, Label, Margin>,

@@ -1,6 +1,6 @@
 //! The picture of a fit: data and minima over the angle of impact.
 
-use stickslip_practice::fit::{Course, Fit, Measured};
+use stickslip_practice::fit::{Fit, FittedCourse, Measured};
 
 use crate::canvas::panel::{Edge, LINEAR, Panel};
 use crate::canvas::shape::{Rectangle, Stroke};
@@ -20,7 +20,6 @@ const CAP: f64 = 3.0;
 /// Draws the data with their errors, the best fit and the two next minima over the angle, a panel
 /// for each quantity. Vertical lines are where the switches of the best fit change; the numbers of
 /// switches stand between them. `None` without [`Fit::course`].
-#[must_use]
 pub fn draw(fit: &Fit) -> Option<Svg> {
     let course = fit.course.as_ref()?;
     let measured = |quantity: &Measured| {
@@ -61,7 +60,7 @@ fn legend(svg: &mut Svg, fit: &Fit) {
     }
 }
 
-fn panel(svg: &mut Svg, fit: &Fit, course: &Course, quantity: Measured, frame: Rectangle) {
+fn panel(svg: &mut Svg, fit: &Fit, course: &FittedCourse, quantity: Measured, frame: Rectangle) {
     let data = fit.residuals.iter().map(|residual| residual.datum);
     let data = data.filter(|datum| datum.quantity == quantity).map(|datum| {
         let (value, error) = (quantity.shown(datum.value), datum.error.unwrap_or(0.0));
@@ -109,7 +108,7 @@ fn panel(svg: &mut Svg, fit: &Fit, course: &Course, quantity: Measured, frame: R
 }
 
 /// Writes the numbers of switches between the boundaries, above a frame, where there is room.
-fn switches(svg: &mut Svg, course: &Course, frame: Rectangle) {
+fn switches(svg: &mut Svg, course: &FittedCourse, frame: Rectangle) {
     let stickslip_plane::Range { low, high } = course.angles_rad;
     let place = |angle: f64| frame.left + frame.width * (angle - low) / (high - low);
     let angles = course.boundaries.iter().map(|boundary| boundary.angle_rad);

@@ -37,7 +37,6 @@ const LEGEND_AT: (f64, f64) = (72.0, 50.0);
 const LEGEND: Rectangle = Rectangle { left: 60.0, top: 38.0, width: 640.0, height: 26.0 };
 
 /// Draws `exhibits` row by row; all panels have the same axes.
-#[must_use]
 pub fn draw(title: &str, exhibits: &[Exhibit]) -> Svg {
     let rows = exhibits.len().div_ceil(COLUMNS).max(1) as f64;
     let mut svg = Svg::new(WIDTH, FIRST.top + STEP.1 * rows + 16.0, title);

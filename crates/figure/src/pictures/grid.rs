@@ -36,7 +36,6 @@ pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, Fi
 }
 
 /// A panel with `values` in so many columns and rows over the window of `grid`.
-#[must_use]
 pub fn panel<'a>(
     grid: &Grid,
     heading: &'a str,

@@ -35,7 +35,6 @@ const KEY: f64 = 24.0;
 const MOST_EVENTS: usize = 2000;
 
 /// Draws `run`.
-#[must_use]
 pub fn draw(run: &Run<'_>) -> Svg {
     let height = match run.names.len() {
         0 | 1 => 320.0,

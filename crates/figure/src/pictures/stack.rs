@@ -76,7 +76,6 @@ struct Turn {
 /// Draws `stack`: an atlas for each damping, with rings around the places of the changes up to the
 /// next damping, and all changes over the damping. A change that is only enclosed is drawn as wide
 /// as its bracket.
-#[must_use]
 pub fn draw(stack: &DampingStack) -> Svg {
     let has = |kind: BoundaryKind| {
         let mut atlases = stack.layers.iter().map(|layer| &layer.atlas);
@@ -109,7 +108,6 @@ pub fn draw(stack: &DampingStack) -> Svg {
 }
 
 /// The same picture of the atlases of a hybrid system over its parameter `over`.
-#[must_use]
 pub fn draw_runs(stack: &Stack<Itinerary, Margin>, names: &RunNames, over: &str) -> Svg {
     let (family, axes) = (&names.family, names.axes());
     let sheet = |layer: &Layer<Itinerary, Margin>| {

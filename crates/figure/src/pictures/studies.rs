@@ -22,7 +22,6 @@ pub struct Picture {
 
 impl Picture {
     /// A picture with its name and caption.
-    #[must_use]
     pub fn new(name: &str, caption: &str, svg: Svg) -> Self {
         Self { name: name.to_owned(), caption: caption.to_owned(), svg }
     }

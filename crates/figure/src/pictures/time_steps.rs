@@ -1,6 +1,8 @@
 //! The picture of the errors of time steps.
 
-use stickslip_practice::time_steps::{Errors, Quantity, Row, Status, TimeSteps};
+use stickslip_practice::time_steps::{
+    Status, SteppedQuantity, TimeStepErrors, TimeStepRow, TimeSteps,
+};
 
 use super::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use crate::canvas::panel::Scale;
@@ -11,13 +13,12 @@ use crate::canvas::svg::Svg;
 /// Draws the median and the largest errors over dt/t_c, both axes logarithmic. Crosses mark steps
 /// that do not resolve a spring. Steps at which contacts do not end, and errors of 0, are not
 /// drawn.
-#[must_use]
 pub fn draw(result: &TimeSteps) -> Svg {
     let mut series = Vec::new();
-    for quantity in Quantity::ALL {
+    for quantity in SteppedQuantity::ALL {
         let (symbol, colour, shape) = look(quantity);
-        let median = |errors: Errors| errors.median;
-        let worst = |errors: Errors| errors.worst.error;
+        let median = |errors: TimeStepErrors| errors.median;
+        let worst = |errors: TimeStepErrors| errors.worst.error;
         let full = Stroke::full(colour, 1.6);
         let mark = Some(Mark { shape, colour });
         let line = |name, stroke, mark, points| Series { name, points, line: Some(stroke), mark };
@@ -31,8 +32,12 @@ pub fn draw(result: &TimeSteps) -> Svg {
     chart(result, series)
 }
 
-fn curve(result: &TimeSteps, quantity: Quantity, error: fn(Errors) -> f64) -> Vec<(f64, f64)> {
-    let point = |row: &Row| {
+fn curve(
+    result: &TimeSteps,
+    quantity: SteppedQuantity,
+    error: fn(TimeStepErrors) -> f64,
+) -> Vec<(f64, f64)> {
+    let point = |row: &TimeStepRow| {
         let error = error(row.errors(quantity)?);
         (error > 0.0).then_some((1.0 / row.steps_per_contact, error))
     };
@@ -43,7 +48,7 @@ fn curve(result: &TimeSteps, quantity: Quantity, error: fn(Errors) -> f64) -> Ve
 fn unstable(result: &TimeSteps) -> Series {
     let rows = result.rows.iter().filter(|row| row.status == Status::Unstable);
     let points = rows.flat_map(|row| {
-        let errors = Quantity::ALL.into_iter().filter_map(|quantity| row.errors(quantity));
+        let errors = SteppedQuantity::ALL.into_iter().filter_map(|quantity| row.errors(quantity));
         errors.map(|errors| (1.0 / row.steps_per_contact, errors.worst.error))
     });
     let mark = Some(Mark { shape: Shape::Cross, colour: INK });
@@ -51,11 +56,11 @@ fn unstable(result: &TimeSteps) -> Series {
     Series { name, points: points.collect(), line: None, mark }
 }
 
-fn look(quantity: Quantity) -> (&'static str, &'static str, Shape) {
+fn look(quantity: SteppedQuantity) -> (&'static str, &'static str, Shape) {
     match quantity {
-        Quantity::TangentialRestitution => ("ε_t", VERMILION, Shape::Disc),
-        Quantity::NormalRestitution => ("ε_n", BLUE, Shape::Square),
-        Quantity::Energy => ("energy", GREEN, Shape::Ring),
+        SteppedQuantity::TangentialRestitution => ("ε_t", VERMILION, Shape::Disc),
+        SteppedQuantity::NormalRestitution => ("ε_n", BLUE, Shape::Square),
+        SteppedQuantity::Energy => ("energy", GREEN, Shape::Ring),
     }
 }
 

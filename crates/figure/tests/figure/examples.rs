@@ -183,11 +183,12 @@ fn drawn() -> Vec<(String, Svg)> {
     };
     drawn.push(("linear chart".to_owned(), chart::draw(&linear)));
     let contacts = vec![Contact::new(4.0, 0.5, 0.1).unwrap()];
-    let settings = time_steps::Settings { contacts, ..time_steps::Settings::default() };
+    let settings =
+        time_steps::TimeStepSettings { contacts, ..time_steps::TimeStepSettings::default() };
     let steps = time_steps::run(&settings, SILENT).unwrap();
     drawn.push(("time steps".to_owned(), pictures::time_steps::draw(&steps)));
     let kappa = Range { low: 10.0, high: 100.0 };
-    let settings = stiff_springs::Settings { kappa, psi: vec![0.3, 1.0] };
+    let settings = stiff_springs::StiffSpringSettings { kappa, psi: vec![0.3, 1.0] };
     let stiff = stiff_springs::run(&settings, SILENT).unwrap();
     let stiff = pictures::studies::stiff_springs::draw(&stiff);
     drawn.extend(stiff.into_iter().map(|picture| (picture.name, picture.svg)));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Deserialize;
-use stickslip_plane::atlas::{Atlas, Document, SCHEMA};
+use stickslip_plane::atlas::{Atlas, AtlasDocument, SCHEMA};
 use stickslip_plane::sealed;
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Itinerary, RunNames};
@@ -39,9 +39,6 @@ pub struct RunsAtlas {
 }
 
 /// Reads an atlas; `-` is standard input.
-///
-/// # Errors
-/// [`FileError::Input`]: the file cannot be read, does not hold an atlas, or contradicts itself.
 pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     let unusable = |reason: String| FileError::input(source::shown(path), reason);
     let text = source::read(path, MOST_BYTES)?;
@@ -60,7 +57,7 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
             stickslip_tracer::SCHEMA
         )));
     }
-    let document: Document = json::parse(&text).map_err(unusable)?;
+    let document: AtlasDocument = json::parse(&text).map_err(unusable)?;
     let atlas = Atlas::try_from(document).map_err(|error| unusable(error.to_string()))?;
     Ok(AnyAtlas::Collisions(Box::new(atlas)))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use stickslip_practice::fit::{self, Column, Datum, Settings};
+use stickslip_practice::fit::{self, Datum, FitSettings, MeasuredColumn};
 
 use super::{number, source};
 use crate::error::FileError;
@@ -15,9 +15,6 @@ const COMMENT: &str = "comment";
 
 /// The data in the file at `path`, or in standard input if it is `-`. Rows have the numbers of
 /// their lines.
-///
-/// # Errors
-/// [`FileError::Input`]: the file cannot be read, or does not describe measured impacts.
 pub fn read(path: &Path, speed: Option<f64>, scaled: bool) -> Result<Vec<Datum>, FileError> {
     let text = source::read(path, MOST_BYTES)?;
     let failed = |reason: String| FileError::input(source::shown(path), reason);
@@ -26,7 +23,7 @@ pub fn read(path: &Path, speed: Option<f64>, scaled: bool) -> Result<Vec<Datum>,
 }
 
 /// The columns of a text, and the lines of its rows.
-fn columns(text: &[u8]) -> Result<(Vec<Column>, Vec<usize>), String> {
+fn columns(text: &[u8]) -> Result<(Vec<MeasuredColumn>, Vec<usize>), String> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text);
     let header = reader.headers().map_err(|error| error.to_string())?.clone();
@@ -34,15 +31,15 @@ fn columns(text: &[u8]) -> Result<(Vec<Column>, Vec<usize>), String> {
         let example = "for example centre_impact_angle_deg,centre_e_t";
         return Err(format!("is empty; expected a header row, {example}"));
     }
-    let column = |name: &str| Column { name: name.to_owned(), values: Vec::new() };
-    let mut columns: Vec<Column> = header.iter().map(column).collect();
+    let column = |name: &str| MeasuredColumn { name: name.to_owned(), values: Vec::new() };
+    let mut columns: Vec<MeasuredColumn> = header.iter().map(column).collect();
     let mut lines = Vec::new();
     let mut record = StringRecord::new();
     while reader.read_record(&mut record).map_err(|error| error.to_string())? {
         let line = record.position().map_or(0, csv::Position::line);
         lines.push(usize::try_from(line).unwrap_or(usize::MAX));
-        if lines.len() > Settings::MOST_DATA {
-            return Err(format!("has too many rows; expected at most {}", Settings::MOST_DATA));
+        if lines.len() > FitSettings::MOST_DATA {
+            return Err(format!("has too many rows; expected at most {}", FitSettings::MOST_DATA));
         }
         for (column, cell) in columns.iter_mut().zip(&record) {
             let blank = cell.is_empty() || column.name == COMMENT;

@@ -4,9 +4,6 @@
 pub const SYNTAX: &str = "written like 18, 1.5e3 or 2/7";
 
 /// Reads the value of an option whose range is checked later, by what it is for.
-///
-/// # Errors
-/// What is wrong, and what is expected.
 pub fn parse_option(text: &str) -> Result<f64, String> {
     parse(text).map_err(|problem| format!("{problem}; expected a finite number, {SYNTAX}"))
 }
@@ -15,48 +12,28 @@ pub fn parse_option(text: &str) -> Result<f64, String> {
 /// them.
 ///
 /// Blanks around a number are ignored.
-///
-/// # Errors
-/// [`NotANumber`] says what is wrong.
-pub fn parse(text: &str) -> Result<f64, NotANumber> {
+pub fn parse(text: &str) -> Result<f64, &'static str> {
     let value = match text.split_once('/') {
         None => decimal(text)?,
         Some((numerator, denominator)) => {
             let (numerator, denominator) = (decimal(numerator)?, decimal(denominator)?);
             if denominator == 0.0 {
-                return Err(NotANumber::ZeroDenominator);
+                return Err("division by 0");
             }
             numerator / denominator
         }
     };
-    if value.is_finite() { Ok(value) } else { Err(NotANumber::Infinite) }
+    if value.is_finite() { Ok(value) } else { Err("not finite") }
 }
 
-/// The reason why a text is not a finite number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NotANumber {
-    /// The text, or a part of a quotient, is empty.
-    #[error("empty")]
-    Empty,
-    /// The text is not written like a number.
-    #[error("not a number")]
-    Syntax,
-    /// The denominator of a quotient is zero.
-    #[error("division by 0")]
-    ZeroDenominator,
-    /// The number is infinite, or above the largest double.
-    #[error("not finite")]
-    Infinite,
-}
-
-fn decimal(text: &str) -> Result<f64, NotANumber> {
+fn decimal(text: &str) -> Result<f64, &'static str> {
     let text = text.trim();
     if text.is_empty() {
-        return Err(NotANumber::Empty);
+        return Err("empty");
     }
-    let value: f64 = text.parse().map_err(|_| NotANumber::Syntax)?;
+    let value: f64 = text.parse().map_err(|_| "not a number")?;
     if value.is_nan() {
-        return Err(NotANumber::Syntax);
+        return Err("not a number");
     }
-    if value.is_infinite() { Err(NotANumber::Infinite) } else { Ok(value) }
+    if value.is_infinite() { Err("not finite") } else { Ok(value) }
 }

@@ -6,7 +6,7 @@ use stickslip_model::spheres::quantity;
 use stickslip_model::spheres::quantity::Quantity;
 use stickslip_model::{Contact, Law};
 
-use crate::input::number::{self, NotANumber, SYNTAX};
+use crate::input::number::{self, SYNTAX};
 
 /// A parameter that an option or a column may give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,6 @@ pub enum Parameter {
 
 impl Parameter {
     /// The name of the column. The name of the option is the same after `--`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Kappa => "kappa",
@@ -46,19 +45,11 @@ impl Parameter {
     }
 
     /// The value in `text`.
-    ///
-    /// # Errors
-    /// [`BadValue`]: not a number, or out of the parameter's range.
-    pub fn parse(self, text: &str) -> Result<f64, BadValue> {
-        let value = number::parse(text)
-            .map_err(|problem| BadValue::Number { problem, expected: self.expected() })?;
-        self.check(value).map_err(|expected| BadValue::Range { expected })
+    pub fn parse(self, text: &str) -> Result<f64, String> {
+        checked(text, &self.expected(), |value| self.check(value).is_ok())
     }
 
     /// `value`, if it is in the parameter's range. The model decides on the ranges that it knows.
-    ///
-    /// # Errors
-    /// What is expected.
     pub fn check(self, value: f64) -> Result<f64, Cow<'static, str>> {
         let contact = match self {
             Self::Kappa => Contact::new(value, 1.0, 0.0),
@@ -88,31 +79,13 @@ impl Parameter {
 }
 
 /// The value of a quantity in SI units in `text`.
-///
-/// # Errors
-/// [`BadValue`]: not a number, or out of the quantity's range.
-pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, BadValue> {
-    let expected = Cow::from(quantity.expected);
-    let value = number::parse(text)
-        .map_err(|problem| BadValue::Number { problem, expected: expected.clone() })?;
-    quantity.check(value).map_err(|_| BadValue::Range { expected })
+pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, String> {
+    checked(text, quantity.expected, |value| quantity.check(value).is_ok())
 }
 
-/// The reason why a text is not the value of a parameter.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum BadValue {
-    /// The text is not a number.
-    #[error("{problem}; expected {expected}, {SYNTAX}")]
-    Number {
-        /// What is wrong with the text.
-        problem: NotANumber,
-        /// What is expected.
-        expected: Cow<'static, str>,
-    },
-    /// The number is out of range.
-    #[error("out of range; expected {expected}")]
-    Range {
-        /// What is expected.
-        expected: Cow<'static, str>,
-    },
+/// The number in `text`, if `accepts` accepts it.
+fn checked(text: &str, expected: &str, accepts: impl Fn(f64) -> bool) -> Result<f64, String> {
+    let value = number::parse(text)
+        .map_err(|problem| format!("{problem}; expected {expected}, {SYNTAX}"))?;
+    if accepts(value) { Ok(value) } else { Err(format!("out of range; expected {expected}")) }
 }

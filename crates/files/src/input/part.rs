@@ -17,9 +17,6 @@ impl MapPart {
     pub const MOST: usize = 1_000_000;
 
     /// Reads `K/N`.
-    ///
-    /// # Errors
-    /// What is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let expected = format!(
             "expected K/N, two whole numbers with 1 <= K <= N <= {}, written like 3/64",
@@ -39,7 +36,6 @@ impl MapPart {
     /// Those of `things` successive things that belong to this part.
     ///
     /// The parts follow each other and have all things. Their sizes differ by at most 1.
-    #[must_use]
     pub fn share(self, things: usize) -> Range<usize> {
         // ⌊k·things/N⌋ without the product of large numbers.
         let (each, rest) = (things / self.count, things % self.count);

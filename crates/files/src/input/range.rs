@@ -2,28 +2,22 @@
 
 use stickslip_plane::Range;
 
-use crate::input::number::{self, NotANumber};
+use crate::input::number;
 use crate::input::parameter::Parameter;
 
 /// Reads an interval `LO:HI` of `parameter`, both ends of which are in its range.
-///
-/// # Errors
-/// [`NotARange`] says what is wrong and what is expected.
-pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, NotARange> {
+pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
     let Range { low, high } = parse(text)?;
     match (parameter.check(low), parameter.check(high)) {
         (Ok(low), Ok(high)) => Ok(Range { low, high }),
-        _ => Err(NotARange::Zero),
+        _ => Err(ZERO.to_owned()),
     }
 }
 
 /// Reads an interval `LO:HI` above 0.
-///
-/// # Errors
-/// [`NotARange`] says what is wrong and what is expected.
-pub fn parse_above_0(text: &str) -> Result<Range, NotARange> {
+pub fn parse_above_0(text: &str) -> Result<Range, String> {
     let range = parse(text)?;
-    if range.low > 0.0 { Ok(range) } else { Err(NotARange::Zero) }
+    if range.low > 0.0 { Ok(range) } else { Err(ZERO.to_owned()) }
 }
 
 /// One value of a parameter, or an interval of them.
@@ -38,7 +32,6 @@ pub enum OneOrRange {
 impl OneOrRange {
     /// The value, or `count` values of the interval in equal ratios, of which the first and the
     /// last are its ends.
-    #[must_use]
     pub fn values(self, count: usize) -> Vec<f64> {
         match self {
             Self::One(value) => vec![value],
@@ -57,65 +50,34 @@ impl OneOrRange {
 }
 
 /// Reads a value of `parameter`, or an interval `LO:HI` as [`parse_for`].
-///
-/// # Errors
-/// What is wrong and what is expected.
 pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange, String> {
     if text.contains(':') {
-        let range = parse_for(parameter, text).map_err(|problem| problem.to_string())?;
-        return Ok(OneOrRange::Range(range));
+        return parse_for(parameter, text).map(OneOrRange::Range);
     }
     let value = parameter.parse(text).map_err(|problem| format!("{problem}, or an interval LO:HI"));
     value.map(OneOrRange::One)
 }
 
 /// Reads an interval `LO:HI`, which may begin at 0.
-///
-/// # Errors
-/// [`NotARange`] says what is wrong and what is expected.
-pub fn parse(text: &str) -> Result<Range, NotARange> {
-    let (low, high) = text.split_once(':').ok_or(NotARange::Syntax)?;
-    let low = number::parse(low).map_err(|problem| NotARange::Low { problem })?;
-    let high = number::parse(high).map_err(|problem| NotARange::High { problem })?;
+pub fn parse(text: &str) -> Result<Range, String> {
+    let (low, high) = text.split_once(':').ok_or(format!("not a range; {EXPECTED}"))?;
+    let end = |name, text| {
+        number::parse(text).map_err(|problem| format!("the {name} end is {problem}; {EXPECTED}"))
+    };
+    let (low, high) = (end("lower", low)?, end("upper", high)?);
     // −0 and 0 are the same lower end.
     if low >= 0.0 && low < high {
         Ok(Range { low: low.abs(), high })
     } else {
-        Err(NotARange::Order)
+        Err(format!("out of range; {EXPECTED}"))
     }
-}
-
-/// The reason why a text is not an interval.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NotARange {
-    /// The text does not have two ends.
-    #[error("not a range; {EXPECTED}")]
-    Syntax,
-    /// The lower end is not a number.
-    #[error("the lower end is {problem}; {EXPECTED}")]
-    Low {
-        /// What is wrong with it.
-        problem: NotANumber,
-    },
-    /// The upper end is not a number.
-    #[error("the upper end is {problem}; {EXPECTED}")]
-    High {
-        /// What is wrong with it.
-        problem: NotANumber,
-    },
-    /// The lower end is negative, or not below the upper end.
-    #[error("out of range; {EXPECTED}")]
-    Order,
-    /// The lower end is 0 where both ends have to be collisions.
-    #[error(
-        "there is no collision at 0, and the boundaries near it have no end; expected LO:HI with \
-         LO > 0"
-    )]
-    Zero,
 }
 
 const EXPECTED: &str =
     "expected LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
+/// What is wrong where both ends have to be collisions.
+const ZERO: &str = "there is no collision at 0, and the boundaries near it have no end; expected \
+                    LO:HI with LO > 0";
 
 /// The numbers of columns and rows of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,9 +93,6 @@ impl Size {
     pub const MOST: usize = 10_usize.saturating_pow(10);
 
     /// Reads `WxH`.
-    ///
-    /// # Errors
-    /// What is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let expected = format!(
             "expected WxH, two whole numbers from 1 whose product is at most {}, \

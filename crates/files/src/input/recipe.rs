@@ -1,9 +1,11 @@
 //! The sources of the parameters of a contact: options, or columns of a file.
 
-use stickslip_model::restitution::{self, RestitutionError};
+use std::fmt::Display;
+
+use stickslip_model::restitution;
 use stickslip_model::{Contact, InvalidValue, Law, Reduction};
 
-use crate::input::parameter::{BadValue, Parameter};
+use crate::input::parameter::Parameter;
 
 /// Values given as options.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,9 +83,6 @@ enum Source {
 
 impl<T> ImpactParameter<T> {
     /// The one of ψ and the ratio that is given, where options give μ and α.
-    ///
-    /// # Errors
-    /// [`RecipeError`]: none of them is given, or both are, or μ or α would not be used.
     pub fn new(
         (psi, ratio): (Option<T>, Option<T>),
         (mu, alpha): (Option<f64>, Option<f64>),
@@ -106,10 +105,6 @@ impl<T> ImpactParameter<T> {
 impl Recipe {
     /// The recipe that options make together with the columns of a file. `column` gives the index
     /// of a parameter's column.
-    ///
-    /// # Errors
-    /// [`RecipeError`]: κ is missing where the law has a spring, exactly one of ψ and the ratio is
-    /// not given, or a value is given twice or would not be used.
     pub fn new(
         given: &Given,
         column: impl Fn(Parameter) -> Option<usize>,
@@ -140,21 +135,17 @@ impl Recipe {
     }
 
     /// The contact. `field` gives the text in a column.
-    ///
-    /// # Errors
-    /// [`ValueError`] names the parameter and its text or value.
-    pub fn contact<'a>(&self, field: impl Fn(usize) -> &'a [u8]) -> Result<Contact, ValueError> {
+    pub fn contact<'a>(&self, field: impl Fn(usize) -> &'a [u8]) -> Result<Contact, String> {
         let value = |source: Source| match source {
             Source::Value(value) => Ok(value),
             Source::Column { parameter, index } => {
                 let text = String::from_utf8_lossy(field(index));
-                parameter.parse(&text).map_err(|problem| ValueError::Field {
-                    name: parameter.name(),
-                    text: quoted(&text),
-                    problem,
-                })
+                let name = parameter.name();
+                let field = |problem| format!("{name} = {}: {problem}", quoted(&text));
+                parameter.parse(&text).map_err(field)
             }
         };
+        let said = |error: &dyn Display| error.to_string();
         let psi = match self.impact {
             ImpactParameter::Psi(psi) => value(psi)?,
             ImpactParameter::Ratio(ratio) => {
@@ -166,24 +157,23 @@ impl Recipe {
         let tangential_damping = value(self.tangential_damping)?;
         let damping = match self.damping {
             DampingSource::Scaled(damping) => value(damping)?,
-            DampingSource::Restitution(e_n) => restitution::damping(self.law, value(e_n)?)?,
+            DampingSource::Restitution(e_n) => {
+                restitution::damping(self.law, value(e_n)?).map_err(|error| said(&error))?
+            }
         };
         let contact = Contact::new(value(self.kappa)?, psi, damping);
         contact
             .and_then(|contact| contact.with_law(self.law, tangential_damping))
-            .map_err(ValueError::Value)
+            .map_err(|error| said(&error))
     }
 }
 
 /// ψ at the impact ratio `ratio`.
-///
-/// # Errors
-/// [`ValueError::Value`]: ψ is out of its range, although the ratio, μ and α are in theirs.
-pub fn reduced(reduction: &Reduction, ratio: f64) -> Result<f64, ValueError> {
+pub fn reduced(reduction: &Reduction, ratio: f64) -> Result<f64, String> {
     let psi = reduction.psi(ratio);
-    Parameter::Psi.check(psi).map_err(|expected| {
-        ValueError::Value(InvalidValue::new("psi = ratio·alpha/mu", psi, expected))
-    })
+    Parameter::Psi
+        .check(psi)
+        .map_err(|expected| InvalidValue::new("psi = ratio·alpha/mu", psi, expected).to_string())
 }
 
 /// The reason why options, or options and columns, do not make a recipe.
@@ -207,27 +197,6 @@ pub enum RecipeError {
         /// The name of the parameter.
         name: &'static str,
     },
-}
-
-/// The reason why values do not make a contact.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ValueError {
-    /// A field of a file is not the value of its parameter.
-    #[error("{name} = {text}: {problem}")]
-    Field {
-        /// The name of the column.
-        name: &'static str,
-        /// The text in the field.
-        text: String,
-        /// What is wrong with it.
-        problem: BadValue,
-    },
-    /// Options give a value that is out of its range, or ratio, α and μ make such a ψ.
-    #[error(transparent)]
-    Value(#[from] InvalidValue),
-    /// No damping has the coefficient of normal restitution.
-    #[error(transparent)]
-    Restitution(#[from] RestitutionError),
 }
 
 /// `text` as it is shown in messages: in quotation marks, on one line, and not too long.

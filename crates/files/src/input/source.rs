@@ -15,9 +15,6 @@ pub struct Source {
 }
 
 /// Opens the file at `path`.
-///
-/// # Errors
-/// [`FileError::Input`]: it cannot be opened.
 pub fn open(path: &Path) -> Result<Source, FileError> {
     if is_standard_input(path) {
         return Ok(Source { bytes: Box::new(io::stdin()), size: None });
@@ -29,9 +26,6 @@ pub fn open(path: &Path) -> Result<Source, FileError> {
 }
 
 /// Reads the file at `path`, which may have so many bytes.
-///
-/// # Errors
-/// [`FileError::Input`]: it cannot be read, or is longer.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     let Source { bytes, .. } = open(path)?;
     let mut text = Vec::new();
@@ -44,19 +38,16 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
 }
 
 /// The failure to read the file at `path`.
-#[must_use]
 pub fn unreadable(path: &Path, error: &io::Error) -> FileError {
     FileError::input(shown(path), format!("cannot be read: {error}"))
 }
 
 /// The name of the file at `path` in messages.
-#[must_use]
 pub fn shown(path: &Path) -> &Path {
     if is_standard_input(path) { Path::new("standard input") } else { path }
 }
 
 /// Whether `path` stands for standard input.
-#[must_use]
 pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }

@@ -18,7 +18,6 @@ pub enum Fact {
 
 impl Provenance {
     /// The facts about a map of `grid` that `engine` computes in this `program`.
-    #[must_use]
     pub fn new(grid: &Grid, engine: &Engine, program: &str) -> Self {
         let mut numbers = match grid.coordinates {
             Coordinates::Psi { damping } => vec![("damping", damping)],

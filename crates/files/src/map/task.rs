@@ -23,7 +23,6 @@ pub struct Task {
 
 impl Task {
     /// The task to compute the collisions of `grid` with `engine` in this `program`.
-    #[must_use]
     pub fn new(grid: Grid, engine: Engine, program: &str) -> Self {
         // Up to κ = 64 a tile takes one core 0.3 s. Beyond, work grows as √κ.
         let halvings = (0..9).filter(|n| grid.largest_stiffness() > 64.0 * 4.0_f64.powi(*n));
@@ -42,51 +41,43 @@ impl Task {
     }
 
     /// The first line of every description.
-    #[must_use]
     pub fn beginning(program: &str) -> String {
         format!("program: {program}, tiles 2")
     }
 
     /// The number of points.
-    #[must_use]
     pub fn points(&self) -> usize {
         self.grid.points()
     }
 
     /// The number of tiles.
-    #[must_use]
     pub fn tiles(&self) -> usize {
         self.points().div_ceil(self.tile_points)
     }
 
     /// The points of tile `index`.
-    #[must_use]
     pub fn range(&self, index: usize) -> Range<usize> {
         let start = index * self.tile_points;
         start..(start + self.tile_points).min(self.points())
     }
 
     /// The points of successive tiles.
-    #[must_use]
     pub fn points_of(&self, tiles: &Range<usize>) -> usize {
         let start = |index: usize| self.points().min(index * self.tile_points);
         start(tiles.end) - start(tiles.start)
     }
 
     /// The index of the tile that has `point`, and the point's index in it.
-    #[must_use]
     pub fn place(&self, point: usize) -> (usize, usize) {
         (point / self.tile_points, point % self.tile_points)
     }
 
     /// What the bytes of tile `index` begin with.
-    #[must_use]
     pub fn label(&self, index: usize) -> String {
         format!("{}tile: {index}\n", self.description)
     }
 
     /// The number of bytes of successive tiles.
-    #[must_use]
     pub fn bytes_of(&self, tiles: &Range<usize>) -> u64 {
         // A label of a tile without the digits of its index, and a checksum.
         let fixed = Tile::length(&self.label(0), 0) - 1;

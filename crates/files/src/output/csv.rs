@@ -12,7 +12,6 @@ use crate::error::FileError;
 const PLAIN: Range<f64> = 1e-4..f64::INFINITY;
 
 /// The shortest digits that read back as `value`.
-#[must_use]
 pub fn number(value: f64) -> String {
     format!("{value:?}")
 }
@@ -95,39 +94,26 @@ pub struct CsvFile(OutputFile);
 
 impl CsvFile {
     /// Starts to write `path`.
-    ///
-    /// # Errors
-    /// [`FileError::Output`]: the file cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         Ok(Self(OutputFile::create(path)?))
     }
 
     /// Makes sure that `path` can be written.
-    ///
-    /// # Errors
-    /// [`FileError::Output`]: the file cannot be created.
     pub fn probe(path: &Path) -> Result<(), FileError> {
         OutputFile::create(path).map(drop)
     }
 
     /// Writes rows.
-    ///
-    /// # Errors
-    /// [`FileError::Output`]: they cannot be written.
     pub fn write(&mut self, rows: &Rows) -> Result<(), FileError> {
         self.0.write_all(&rows.text).map_err(|error| self.0.failure(error))
     }
 
     /// Whether it is a pipe that nobody reads any more.
-    #[must_use]
     pub fn is_unheard(&self) -> bool {
         self.0.is_unheard()
     }
 
     /// The file with all rows.
-    ///
-    /// # Errors
-    /// [`FileError::Output`]: the file cannot be stored.
     pub fn store(self) -> Result<StoredFile, FileError> {
         self.0.store()
     }

@@ -73,7 +73,6 @@ pub const EVENTS: [&str; 10] = [
 ];
 
 /// The columns of results of impacts of so many spheres, one or two.
-#[must_use]
 pub fn names(spheres: usize) -> Vec<&'static str> {
     let spheres = SPHERES.into_iter().take(spheres).flatten();
     RESULTS.into_iter().chain(spheres).chain(ACCOUNT).collect()

@@ -12,9 +12,6 @@ pub use rawzip::ZipArchiveWriter as Archive;
 use rawzip::{Error, ErrorKind};
 
 /// Writes the entry `name`.npy, whose content `elements` writes.
-///
-/// # Errors
-/// The archive cannot be written.
 pub fn array<W: Write>(
     archive: &mut Archive<W>,
     name: &str,
@@ -45,7 +42,6 @@ fn header(element: &str, shape: &str) -> Vec<u8> {
 }
 
 /// The error of the file or, if the archive is wrong, an error that says so.
-#[must_use]
 pub fn plain(error: Error) -> io::Error {
     match error.into_kind() {
         ErrorKind::IO(error) => error,
@@ -54,17 +50,11 @@ pub fn plain(error: Error) -> io::Error {
 }
 
 /// Writes a number as an array without dimensions.
-///
-/// # Errors
-/// The archive cannot be written.
 pub fn number<W: Write>(archive: &mut Archive<W>, name: &str, value: f64) -> io::Result<()> {
     array(archive, name, "<f8", "", |out| out.write_all(&value.to_le_bytes()))
 }
 
 /// Writes a text as an array without dimensions.
-///
-/// # Errors
-/// The archive cannot be written.
 pub fn text<W: Write>(archive: &mut Archive<W>, name: &str, text: &str) -> io::Result<()> {
     // In NumPy a character takes four bytes.
     let element = format!("<U{}", text.chars().count());
@@ -74,9 +64,6 @@ pub fn text<W: Write>(archive: &mut Archive<W>, name: &str, text: &str) -> io::R
 }
 
 /// Writes texts as an array of this shape.
-///
-/// # Errors
-/// The archive cannot be written.
 pub fn texts<'a, W: Write>(
     archive: &mut Archive<W>,
     name: &str,

@@ -3,15 +3,12 @@
 use std::io;
 
 use rawzip::ZipArchiveWriter;
-use stickslip_practice::tables::{ACROSS, ALONG, Table, Window};
+use stickslip_practice::tables::{ACROSS, ALONG, Table, TableWindow};
 
 use super::npz::{array, number, plain, text};
 
 /// The table that this `program` made as NumPy arrays, with the names of
 /// [`Arrays`](stickslip_practice::tables::Arrays).
-///
-/// # Errors
-/// The archive cannot be made.
 pub fn archive(table: &Table, program: &str) -> io::Result<Vec<u8>> {
     let arrays = table.arrays();
     let mut bytes = Vec::new();
@@ -68,8 +65,8 @@ pub fn archive(table: &Table, program: &str) -> io::Result<Vec<u8>> {
         ("largest_error_of_eps_n", table.verification.largest_error_of_eps_n),
     ];
     match table.window {
-        Window::Scaled { damping, .. } => numbers.push(("damping", damping)),
-        Window::Velocities { pair, .. } => {
+        TableWindow::Scaled { damping, .. } => numbers.push(("damping", damping)),
+        TableWindow::Velocities { pair, .. } => {
             text(&mut archive, "pair", &serde_json::to_string(&pair)?)?;
         }
     }

@@ -1,6 +1,6 @@
 //! Texts of numbers.
 
-use stickslip_files::input::number::{NotANumber, parse};
+use stickslip_files::input::number::parse;
 
 #[test]
 fn integers_decimals_exponents_and_quotients_are_numbers() {
@@ -20,21 +20,21 @@ fn integers_decimals_exponents_and_quotients_are_numbers() {
 #[test]
 fn everything_else_is_refused() {
     for (text, expected) in [
-        ("", NotANumber::Empty),
-        ("  ", NotANumber::Empty),
-        ("/7", NotANumber::Empty),
-        ("2/", NotANumber::Empty),
-        ("abc", NotANumber::Syntax),
-        ("1,5", NotANumber::Syntax),
-        ("1/2/3", NotANumber::Syntax),
-        ("0x10", NotANumber::Syntax),
-        ("nan", NotANumber::Syntax),
-        ("NaN/1", NotANumber::Syntax),
-        ("inf", NotANumber::Infinite),
-        ("1e400", NotANumber::Infinite),
-        ("1e300/1e-300", NotANumber::Infinite),
-        ("1/inf", NotANumber::Infinite),
-        ("2/0", NotANumber::ZeroDenominator),
+        ("", "empty"),
+        ("  ", "empty"),
+        ("/7", "empty"),
+        ("2/", "empty"),
+        ("abc", "not a number"),
+        ("1,5", "not a number"),
+        ("1/2/3", "not a number"),
+        ("0x10", "not a number"),
+        ("nan", "not a number"),
+        ("NaN/1", "not a number"),
+        ("inf", "not finite"),
+        ("1e400", "not finite"),
+        ("1e300/1e-300", "not finite"),
+        ("1/inf", "not finite"),
+        ("2/0", "division by 0"),
     ] {
         assert_eq!(parse(text), Err(expected), "{text}");
     }

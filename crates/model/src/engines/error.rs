@@ -1,13 +1,16 @@
 //! Why a collision cannot be computed.
 
 use stickslip_contact::domain::OutOfDomain;
-use stickslip_contact::{Contact, NotFinite, OtherLaw};
+use stickslip_contact::{Contact, InvalidValue, NotFinite, OtherLaw};
 use stickslip_exact::exact::ExactError;
 use stickslip_solver::{Outcome, RunError};
 
-/// The reason why an engine has no result.
+/// The reason why a collision cannot be computed, or why there is none.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CollisionError {
+    /// No collision has these parameters.
+    #[error(transparent)]
+    Parameter(#[from] InvalidValue),
     /// The exact solution does not apply to the contact.
     #[error(transparent)]
     Exact(#[from] ExactError),

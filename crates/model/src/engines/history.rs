@@ -114,13 +114,11 @@ impl History {
     }
 
     /// Scaled duration t_c of the contact.
-    #[must_use]
     pub fn duration(&self) -> f64 {
         self.course().duration()
     }
 
     /// The phases in order; there is one more than there are switches.
-    #[must_use]
     pub fn phases(&self) -> impl ExactSizeIterator<Item = PhaseHistory<'_>> {
         let course = self.course();
         (0..course.phases()).map(move |index| PhaseHistory { course, index })
@@ -128,7 +126,6 @@ impl History {
 
     /// The collision at a scaled time, at a switch in the phase that begins; `None` outside the
     /// contact.
-    #[must_use]
     pub fn at(&self, time: f64) -> Option<Snapshot> {
         (0.0..=self.duration()).contains(&time).then(|| self.course().at(time))
     }
@@ -175,26 +172,22 @@ impl History {
 
 impl PhaseHistory<'_> {
     /// The law that holds.
-    #[must_use]
     pub fn regime(&self) -> Regime {
         self.course.phase(self.index).0
     }
 
     /// The side of sliding or, in stick, the side from which the spring comes.
-    #[must_use]
     pub fn side(&self) -> Side {
         self.course.phase(self.index).1
     }
 
     /// The first moment of the phase.
-    #[must_use]
     pub fn begin(&self) -> Snapshot {
         self.course.begin(self.index)
     }
 
     /// The last moment of the phase; of the last phase, that at which the overlap vanishes or the
     /// law ends the contact.
-    #[must_use]
     pub fn end(&self) -> Snapshot {
         self.course.end(self.index)
     }

@@ -87,13 +87,11 @@ impl Collider {
     /// A collider with the tolerances [`Self::RTOL`] and [`Self::ATOL`], whatever the pair:
     /// [`Dop853`](stickslip_solver::Dop853), [`Dopri5`](stickslip_solver::Dopri5) or an
     /// [`EmbeddedPair`].
-    #[must_use]
     pub fn new(pair: impl Into<EmbeddedPair>) -> Self {
         Self::with_tolerances(pair, Self::RTOL, Self::ATOL)
     }
 
     /// A collider with these tolerances, which are checked when it is used.
-    #[must_use]
     pub fn with_tolerances(pair: impl Into<EmbeddedPair>, rtol: f64, atol: f64) -> Self {
         let first_step = Some(LONGEST_STEP);
         let max_step = LONGEST_STEP;
@@ -105,7 +103,6 @@ impl Collider {
     /// studies.
     ///
     /// The other colliders compute collisions near a graze once more with twice the digits.
-    #[must_use]
     pub fn unrefined(pair: impl Into<EmbeddedPair>, options: Options) -> Self {
         Self { pair: pair.into(), options, refined: false, digits: false }
     }
@@ -124,7 +121,6 @@ impl Collider {
     /// assert_eq!(decided.itinerary(), Collider::default().collide(contact)?.itinerary());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn deciding() -> Self {
         Self { digits: false, ..Self::default() }
     }

@@ -21,7 +21,6 @@ use crate::engines::error::CollisionError;
 /// assert_eq!(coulomb::restitution(4.0, 1.0), 0.5);
 /// assert_eq!(coulomb::restitution(1.0, 1.0), 0.0);
 /// ```
-#[must_use]
 pub fn restitution(psi: f64, eps_n: f64) -> f64 {
     pragmatic(psi, eps_n, 0.0)
 }
@@ -34,7 +33,6 @@ pub fn restitution(psi: f64, eps_n: f64) -> f64 {
 ///
 /// assert_eq!(coulomb::pragmatic(1.0, 1.0, -0.2), -0.2);
 /// ```
-#[must_use]
 pub fn pragmatic(psi: f64, eps_n: f64, floor: f64) -> f64 {
     let sliding = 1.0 - (1.0 + eps_n) / psi;
     if sliding < floor { floor } else { sliding }

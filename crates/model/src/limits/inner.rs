@@ -73,7 +73,6 @@ impl HalfSwing {
     /// As L̈ > 0, the spring cannot reach its limit again on the side where it starts. On the other
     /// side it reaches the limit before its peak, which is at least as high as the limit at the
     /// onset.
-    #[must_use]
     pub fn from_onset(onset: f64) -> Self {
         let (spring, velocity) = (onset * onset.sqrt(), -1.5 * onset.sqrt());
         let motion = |release: f64| {
@@ -96,13 +95,11 @@ impl HalfSwing {
     }
 
     /// |W| at the end of contact, if the slip phase lasts until then.
-    #[must_use]
     pub fn final_velocity(&self) -> Option<f64> {
         (self.carried >= 0.0).then_some(self.carried)
     }
 
     /// σ at the start of the next stick phase, if there is one.
-    #[must_use]
     pub fn next_onset(&self) -> Option<f64> {
         (self.carried < 0.0).then(|| {
             // The condition is sW = carried + (2/5)σ^{5/2} = −(3/2)√σ, a polynomial in √σ.
@@ -121,7 +118,6 @@ impl HalfSwing {
 
 /// The phase of an onset at σ = `onset` > 0, otherwise NaN. It is about σ/π, the number of half
 /// swings to come if all of them lasted π.
-#[must_use]
 pub fn phase(onset: f64) -> f64 {
     if onset.is_nan() || onset <= 0.0 {
         return f64::NAN;
@@ -136,7 +132,6 @@ pub fn phase(onset: f64) -> f64 {
 
 /// The last half swing of the orbit whose onsets have `phase` and the phases that differ from it by
 /// whole numbers.
-#[must_use]
 pub fn last_half_swing(phase: f64) -> HalfSwing {
     last_half_swing_from(phase, FAR, PHASE.len())
 }
@@ -144,7 +139,6 @@ pub fn last_half_swing(phase: f64) -> HalfSwing {
 /// As [`last_half_swing`], from the first onset at σ > `start` and with the first `terms`
 /// coefficients of [`PHASE`]. It shows how fast both converge. `start` is from 10 to 1e6; the work
 /// grows with it.
-#[must_use]
 pub fn last_half_swing_from(phase: f64, start: f64, terms: usize) -> HalfSwing {
     let phase = phase - phase.floor() + (start.clamp(10.0, 1e6) / PI).ceil();
     let mut onset = PI * phase;
@@ -187,7 +181,6 @@ pub struct Peak {
 /// assert!((found.release - peak.release).abs() < 1e-14);
 /// assert!((found.final_velocity().unwrap() - peak.velocity).abs() < 1e-14);
 /// ```
-#[must_use]
 pub fn peak() -> Peak {
     // Cardano's formula.
     let half = 9.0 * PI / 16.0;

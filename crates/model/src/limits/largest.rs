@@ -21,7 +21,6 @@ pub const FORCE: f64 = 1.1432626298183158660;
 /// assert!((18.0 * largest - largest::FORCE).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[must_use]
 pub fn spring(collision: &Collision) -> Option<f64> {
     if collision.contact.damping() > 0.0 {
         return None;

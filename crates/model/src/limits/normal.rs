@@ -25,7 +25,6 @@ const C4: f64 = 0.348742675260385035;
 /// ```
 /// assert!((stickslip_model::limits::normal::series(0.01) - 0.988547439643).abs() < 2e-11);
 /// ```
-#[must_use]
 pub fn series(damping: f64) -> f64 {
     let a = damping;
     let late_end = 1.0 + a * (-C1 + a * (0.6 * C1 * C1 + a * (C3 + a * C4)));
@@ -42,7 +41,6 @@ pub fn series(damping: f64) -> f64 {
 /// ```
 /// assert!((stickslip_model::limits::normal::pade(0.2) - 0.800965).abs() < 3e-4);
 /// ```
-#[must_use]
 pub fn pade(damping: f64) -> f64 {
     let d = damping.sqrt();
     let b1 = 2.0 / (3.0 * C1 * C1);

@@ -17,7 +17,6 @@ pub struct Material {
 
 impl Material {
     /// The elastic constants, on which a contact depends.
-    #[must_use]
     pub fn elasticity(&self) -> Elasticity {
         Elasticity { young_modulus_pa: self.young_modulus_pa, poisson_ratio: self.poisson_ratio }
     }
@@ -69,7 +68,6 @@ pub struct Sphere {
 
 impl Sphere {
     /// A homogeneous sphere.
-    #[must_use]
     pub fn homogeneous(radius_m: f64, material: &Material) -> Self {
         let mass_kg = Self::homogeneous_mass(radius_m, material.density_kg_per_m3);
         Self {
@@ -81,13 +79,11 @@ impl Sphere {
     }
 
     /// Mass (4/3)πR³ density in kg of a homogeneous sphere.
-    #[must_use]
     pub fn homogeneous_mass(radius_m: f64, density_kg_per_m3: f64) -> f64 {
         4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3) * density_kg_per_m3
     }
 
     /// Moment of inertia (2/5) m R² in kg m² of a homogeneous sphere.
-    #[must_use]
     pub fn homogeneous_moment(radius_m: f64, mass_kg: f64) -> f64 {
         0.4 * mass_kg * radius_m * radius_m
     }
@@ -130,5 +126,72 @@ impl Body {
             Self::Sphere(sphere) => sphere.validate(),
             Self::Wall(Wall { elasticity }) => elasticity.map_or(Ok(()), |e| e.validate()),
         }
+    }
+}
+
+/// The properties of the two surfaces together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Surface {
+    /// Coulomb's coefficient of friction μ.
+    pub friction: f64,
+    /// Stiffness k_t of the tangential spring in kg/s².
+    pub tangential_stiffness_kg_per_s2: f64,
+    /// Damping time A in s in F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A for this A.
+    pub damping_time_s: f64,
+}
+
+impl Surface {
+    /// Checks all quantities.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
+        quantity::FRICTION.check(self.friction)?;
+        quantity::TANGENTIAL_STIFFNESS.check(self.tangential_stiffness_kg_per_s2)?;
+        quantity::DAMPING_TIME.check(self.damping_time_s)?;
+        Ok(())
+    }
+}
+
+/// The numbers μ and α that reduce the impact ratio: ψ = (g_t/g_n)·α/μ, equation (23) of Schwager,
+/// Becker and Pöschel (2008).
+///
+/// ```
+/// use stickslip_model::Reduction;
+///
+/// // Homogeneous spheres with μ = 0.4: from g_t/g_n = 2μ/α on, where ψ = 2, there is sliding only.
+/// let reduction = Reduction::default();
+/// assert!((reduction.ratio(2.0) - 2.8).abs() < 1e-15);
+/// assert!((reduction.psi(2.8) - 2.0).abs() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Reduction {
+    /// Coulomb's coefficient of friction μ.
+    pub mu: f64,
+    /// Tangential inertia α: 2/7 for homogeneous spheres, at most 1.
+    pub alpha: f64,
+}
+
+impl Reduction {
+    /// μ = 0.4 and α = 2/7, homogeneous spheres: the values of all figures of the paper.
+    pub const HOMOGENEOUS: Self = Self { mu: 0.4, alpha: 2.0 / 7.0 };
+
+    /// ψ at the impact ratio g_t/g_n.
+    pub fn psi(&self, ratio: f64) -> f64 {
+        ratio * self.alpha / self.mu
+    }
+
+    /// The impact ratio g_t/g_n at ψ.
+    pub fn ratio(&self, psi: f64) -> f64 {
+        psi * self.mu / self.alpha
+    }
+}
+
+impl Default for Reduction {
+    /// [`Self::HOMOGENEOUS`].
+    fn default() -> Self {
+        Self::HOMOGENEOUS
     }
 }

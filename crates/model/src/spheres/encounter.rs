@@ -106,18 +106,18 @@ impl Encounter {
     /// The encounter of two spheres.
     ///
     /// # Errors
-    /// [`EncounterError`]: a quantity is out of its range, the spheres do not touch, or they do not
+    /// [`InvalidValue`]: a quantity is out of its range, the spheres do not touch, or they do not
     /// approach.
     pub fn of_spheres(
         first: (&Sphere, &Motion),
         second: (&Sphere, &Motion),
         forces: impl Into<Forces>,
-    ) -> Result<Self, EncounterError> {
+    ) -> Result<Self, InvalidValue> {
         let pair = BodyPair::new(first.0, &Body::Sphere(*second.0), forces)?;
         let separation = first.1.position_m - second.1.position_m;
         let distance_m = separation.norm();
         let touching_m = first.0.radius_m + second.0.radius_m;
-        require_touch("distance of the centres", distance_m, touching_m)?;
+        require_touch("the distance of the centres", distance_m, touching_m)?;
         let normal = separation / distance_m;
         let partner = |(sphere, motion): (&Sphere, &Motion)| Partner {
             sphere: Some(*sphere),
@@ -132,13 +132,13 @@ impl Encounter {
     /// The encounter of a sphere, the first body, and a wall, the second body.
     ///
     /// # Errors
-    /// [`EncounterError`]: a quantity is out of its range, the sphere does not touch the wall on
+    /// [`InvalidValue`]: a quantity is out of its range, the sphere does not touch the wall on
     /// the side to which the wall's normal points, or they do not approach.
     pub fn with_wall(
         sphere: (&Sphere, &Motion),
         wall: (&Wall, &WallMotion),
         forces: impl Into<Forces>,
-    ) -> Result<Self, EncounterError> {
+    ) -> Result<Self, InvalidValue> {
         let (WallMotion { point_m, normal, velocity_m_per_s }, position_m) =
             (*wall.1, sphere.1.position_m);
         let pair = BodyPair::new(sphere.0, &Body::Wall(*wall.0), forces)?;
@@ -146,10 +146,11 @@ impl Encounter {
         let normal = normal / normal.amax();
         let normal = normal / normal.norm();
         if !normal.iter().all(|component| component.is_finite()) {
-            return Err(EncounterError::NoNormal);
+            let expected = "three finite numbers that are not all 0";
+            return Err(InvalidValue::phrase("the wall's normal", "has no direction", expected));
         }
         let height_m = (position_m - point_m).dot(&normal);
-        require_touch("height of the centre above the wall", height_m, sphere.0.radius_m)?;
+        require_touch("the height of the centre above the wall", height_m, sphere.0.radius_m)?;
         let still =
             Motion { position_m: point_m, velocity_m_per_s, spin_rad_per_s: Vector3::zeros() };
         let partners = [
@@ -177,13 +178,13 @@ impl Encounter {
     /// ```
     ///
     /// # Errors
-    /// [`EncounterError`]: a quantity is out of its range.
+    /// [`InvalidValue`]: a quantity is out of its range.
     pub fn of_velocities(
         sphere: &Sphere,
         other: &Body,
         (normal_m_per_s, tangential_m_per_s): (f64, f64),
         forces: impl Into<Forces>,
-    ) -> Result<Self, EncounterError> {
+    ) -> Result<Self, InvalidValue> {
         quantity::NORMAL_VELOCITY.check(normal_m_per_s)?;
         quantity::TANGENTIAL_VELOCITY.check(tangential_m_per_s)?;
         let pair = BodyPair::new(sphere, other, forces)?;
@@ -209,13 +210,11 @@ impl Encounter {
 
     /// The parameters of the scaled collision that decides the outcome. For a central impact, the
     /// collision has the same normal motion.
-    #[must_use]
     pub fn contact(&self) -> Contact {
         self.impact.contact
     }
 
     /// Whether the impact is central: the surfaces have no tangential velocity.
-    #[must_use]
     pub fn is_central(&self) -> bool {
         self.tangent.is_none()
     }
@@ -230,16 +229,20 @@ impl Encounter {
         partners: [Partner; 2],
         normal: Vector3<f64>,
         contact_point_m: Vector3<f64>,
-    ) -> Result<Self, EncounterError> {
+    ) -> Result<Self, InvalidValue> {
         let [one, two] = partners.map(|partner| partner.motion);
         let approach = one.velocity_m_per_s - two.velocity_m_per_s;
         let turn = one.spin_rad_per_s * partners[0].arm_m + two.spin_rad_per_s * partners[1].arm_m;
         let normal_m_per_s = -approach.dot(&normal);
         if !normal_m_per_s.is_finite() || !turn.iter().all(|component| component.is_finite()) {
-            return Err(EncounterError::NotFinite);
+            let name = "the velocity of the surfaces";
+            let expected = "finite velocities and spins";
+            return Err(InvalidValue::phrase(name, "is not finite", expected));
         }
         if normal_m_per_s <= 0.0 {
-            return Err(EncounterError::NotApproaching { normal_m_per_s });
+            let phrase = format!("= {normal_m_per_s} m/s: the bodies do not approach");
+            let name = "the normal velocity of approach";
+            return Err(InvalidValue::phrase(name, phrase, "a finite number above 0"));
         }
         let sliding = tangential(&(approach - turn.cross(&normal)), &normal);
         let speeds = partners.map(|partner| {
@@ -257,7 +260,7 @@ impl Encounter {
         partners: [Partner; 2],
         (normal, contact_point_m): (Vector3<f64>, Vector3<f64>),
         (normal_m_per_s, sliding): (f64, Option<(Vector3<f64>, f64)>),
-    ) -> Result<Self, EncounterError> {
+    ) -> Result<Self, InvalidValue> {
         let turning = partners.iter().filter_map(|partner| {
             partner
                 .sphere
@@ -283,42 +286,6 @@ impl Encounter {
     }
 }
 
-/// The reason why two bodies do not collide.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum EncounterError {
-    /// A quantity is out of its range.
-    #[error(transparent)]
-    Invalid(#[from] InvalidValue),
-    /// The bodies are apart, or overlap.
-    #[error(
-        "the {name} = {value_m} m: the bodies {}; expected {touching_m} m, within {TOUCH:e} of it",
-        if value_m > touching_m { "are apart" } else { "overlap" }
-    )]
-    NotTouching {
-        /// The distance in words.
-        name: &'static str,
-        /// Value of the distance in m.
-        value_m: f64,
-        /// Value of the distance in m at which the bodies touch.
-        touching_m: f64,
-    },
-    /// The bodies separate, or keep their distance.
-    #[error(
-        "the normal velocity of approach = {normal_m_per_s} m/s: the bodies do not approach; expected a finite \
-         number above 0"
-    )]
-    NotApproaching {
-        /// Velocity of approach in m/s.
-        normal_m_per_s: f64,
-    },
-    /// The normal of a wall has no direction.
-    #[error("the wall's normal has no direction; expected three finite numbers that are not all 0")]
-    NoNormal,
-    /// The velocity of the surfaces is beyond the range of numbers.
-    #[error("the velocity of the surfaces is not finite; expected finite velocities and spins")]
-    NotFinite,
-}
-
 /// The part of `vector` that is perpendicular to `normal`.
 pub(crate) fn tangential(vector: &Vector3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
     vector - normal * vector.dot(normal)
@@ -331,9 +298,11 @@ pub(crate) fn direction(difference: &Vector3<f64>, speed: f64) -> Option<(Vector
     (length > 8.0 * f64::EPSILON * speed).then(|| (difference / length, length))
 }
 
-fn require_touch(name: &'static str, value_m: f64, touching_m: f64) -> Result<(), EncounterError> {
+fn require_touch(name: &'static str, value_m: f64, touching_m: f64) -> Result<(), InvalidValue> {
     if (value_m - touching_m).abs() <= TOUCH * touching_m {
         return Ok(());
     }
-    Err(EncounterError::NotTouching { name, value_m, touching_m })
+    let how = if value_m > touching_m { "are apart" } else { "overlap" };
+    let phrase = format!("= {value_m} m: the bodies {how}");
+    Err(InvalidValue::phrase(name, phrase, format!("{touching_m} m, within {TOUCH:e} of it")))
 }

@@ -2,10 +2,11 @@
 
 use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
 
+use super::bodies::Surface;
 use super::quantity::{self, Quantity};
-use super::surface::Surface;
-use super::units::Units;
-use crate::restitution::{self, RestitutionError};
+use super::scaling::Units;
+use crate::engines::error::CollisionError;
+use crate::restitution;
 
 /// The constants of a contact law in SI units. Which of them a law has is said at each.
 ///
@@ -80,41 +81,6 @@ enum Dashpot {
     Scaled(f64, f64),
 }
 
-/// Constants that do not fit a law.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidForces {
-    /// A constant is out of its range.
-    #[error(transparent)]
-    Parameter(#[from] InvalidValue),
-    /// A constant is missing.
-    #[error("{name} is missing; expected in this law: {expected}")]
-    Missing {
-        /// The name of the constant.
-        name: &'static str,
-        /// Its range and unit.
-        expected: &'static str,
-    },
-    /// A constant has no meaning in the law.
-    #[error("{name} = {value} has no meaning in this law; expected without it")]
-    Meaningless {
-        /// The name of the constant.
-        name: &'static str,
-        /// The value that was given.
-        value: f64,
-    },
-    /// No damping of the law has the coefficient of restitution.
-    #[error(transparent)]
-    Restitution(#[from] RestitutionError),
-    /// The damping is given twice.
-    #[error("{first} and {second} are both given; expected one constant of damping")]
-    Twice {
-        /// The name of one constant.
-        first: &'static str,
-        /// The name of another one.
-        second: &'static str,
-    },
-}
-
 impl Forces {
     /// The law `law` with `constants`.
     ///
@@ -143,9 +109,9 @@ impl Forces {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidForces`] names the first constant that is missing, out of its range or without
-    /// meaning in the law.
-    pub fn new(law: Law, constants: &Constants) -> Result<Self, InvalidForces> {
+    /// [`CollisionError::Parameter`] names the first constant that is missing, out of its range or
+    /// without meaning in the law.
+    pub fn new(law: Law, constants: &Constants) -> Result<Self, CollisionError> {
         let c = constants;
         let friction = quantity::FRICTION.check(c.friction)?;
         let elastic = match law.normal {
@@ -217,7 +183,7 @@ impl From<&Surface> for Forces {
 }
 
 impl Dashpot {
-    fn new(law: Law, constants: &Constants) -> Result<Self, InvalidForces> {
+    fn new(law: Law, constants: &Constants) -> Result<Self, CollisionError> {
         let c = constants;
         let critical = restitution::critical_damping(law);
         let has_time = matches!(
@@ -233,7 +199,7 @@ impl Dashpot {
             (&quantity::CRITICAL_DAMPING_RATIO, c.critical_damping_ratio, has_ratio),
             (&quantity::NORMAL_RESTITUTION, c.e_n, damped),
         ];
-        let mut given = None;
+        let mut given: Option<(&Quantity, f64)> = None;
         for (quantity, value, has) in all {
             let Some(value) = value else { continue };
             let none = if quantity.name == quantity::NORMAL_RESTITUTION.name { 1.0 } else { 0.0 };
@@ -242,7 +208,9 @@ impl Dashpot {
             }
             let value = quantity.check(value)?;
             if let (Some((first, _)), true) = (given, damped) {
-                return Err(twice(first, quantity));
+                let phrase = format!("and {} are both given", quantity.name);
+                let expected = "one constant of damping";
+                return Err(InvalidValue::phrase(first.name, phrase, expected).into());
             }
             given = Some((quantity, value));
         }
@@ -252,7 +220,7 @@ impl Dashpot {
         }
         let Some((quantity, value)) = given.filter(|_| damped) else {
             return if damped {
-                Err(missing(has_time, has_ratio))
+                Err(without_damping(has_time, has_ratio).into())
             } else {
                 Ok(Self::Coefficient(0.0))
             };
@@ -274,33 +242,36 @@ impl Dashpot {
 }
 
 /// A damped law without damping.
-fn missing(has_time: bool, has_ratio: bool) -> InvalidForces {
+fn without_damping(has_time: bool, has_ratio: bool) -> InvalidValue {
     let expected = match (has_time, has_ratio) {
         (true, true) => "it, damping_time_s, damping_ratio, critical_damping_ratio or e_n",
         (true, false) => "it, damping_time_s or e_n",
         (false, true) => "it, damping_ratio, critical_damping_ratio or e_n",
         (false, false) => "it or e_n",
     };
-    InvalidForces::Missing { name: quantity::DAMPING_COEFFICIENT.name, expected }
+    missing(quantity::DAMPING_COEFFICIENT.name, expected)
 }
 
-fn twice(first: &Quantity, second: &Quantity) -> InvalidForces {
-    InvalidForces::Twice { first: first.name, second: second.name }
+fn missing(name: &'static str, expected: &str) -> InvalidValue {
+    InvalidValue::phrase(name, "is missing", format!("in this law: {expected}"))
 }
 
 fn checked(quantity: &Quantity, value: Option<f64>) -> Result<Option<f64>, InvalidValue> {
     value.map(|value| quantity.check(value)).transpose()
 }
 
-fn required(quantity: &Quantity, value: Option<f64>) -> Result<f64, InvalidForces> {
+fn required(quantity: &Quantity, value: Option<f64>) -> Result<f64, InvalidValue> {
     let Quantity { name, expected, .. } = *quantity;
-    checked(quantity, value)?.ok_or(InvalidForces::Missing { name, expected })
+    checked(quantity, value)?.ok_or_else(|| missing(name, expected))
 }
 
 /// Refuses a constant that the law does not have.
-fn unused(quantity: &Quantity, value: Option<f64>) -> Result<(), InvalidForces> {
+fn unused(quantity: &Quantity, value: Option<f64>) -> Result<(), InvalidValue> {
     match value {
-        Some(value) => Err(InvalidForces::Meaningless { name: quantity.name, value }),
+        Some(value) => {
+            let phrase = format!("= {value} has no meaning in this law");
+            Err(InvalidValue::phrase(quantity.name, phrase, "without it"))
+        }
         None => Ok(()),
     }
 }

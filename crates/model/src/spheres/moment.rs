@@ -42,7 +42,6 @@ impl Encounter {
     /// 1e-10);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn snapshot(&self, moment: &Snapshot) -> ForceSnapshot {
         let impact = &self.impact;
         let force_n = impact.force_unit_n();

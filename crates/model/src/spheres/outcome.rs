@@ -77,7 +77,6 @@ pub struct EnergyAccount {
 
 impl EnergyAccount {
     /// Energy in J that the account does not explain. It measures the errors of the calculation.
-    #[must_use]
     pub fn unbalanced_j(&self) -> f64 {
         self.kinetic_before_j + self.work_of_wall_j
             - self.kinetic_after_j
@@ -90,7 +89,6 @@ impl EnergyAccount {
 
 impl Encounter {
     /// The outcome, given the `collision` of [`Self::contact`] from any engine.
-    #[must_use]
     pub fn outcome(&self, collision: &Collision) -> Outcome {
         let impact = &self.impact;
         let pair = &impact.pair;

@@ -75,7 +75,6 @@ pub struct Comparison {
 impl ImpactReport {
     /// The report on `encounter`, given the `collision` of its [`Encounter::contact`] from any
     /// engine.
-    #[must_use]
     pub fn new(encounter: &Encounter, collision: Collision) -> Self {
         let outcome = encounter.outcome(&collision);
         let comparison = Comparison::new(encounter, &outcome);
@@ -83,26 +82,22 @@ impl ImpactReport {
     }
 
     /// Reduced impact ratio ψ; 0 in a central impact.
-    #[must_use]
     pub fn psi(&self) -> f64 {
         if self.encounter.is_central() { 0.0 } else { self.collision.contact.psi() }
     }
 
     /// Number of sign changes of the tangential velocity; 0 in a central impact.
-    #[must_use]
     pub fn reversals(&self) -> usize {
         if self.encounter.is_central() { 0 } else { self.collision.reversals }
     }
 
     /// One character for each phase, as [`Collision::itinerary`]; a central impact sticks from its
     /// start to its end.
-    #[must_use]
     pub fn itinerary(&self) -> String {
         if self.encounter.is_central() { "o".to_owned() } else { self.collision.itinerary() }
     }
 
     /// The motions of the spheres after the contact, the first body first. A wall is left out.
-    #[must_use]
     pub fn spheres(&self) -> &[Motion] {
         &self.outcome.motions[..self.encounter.spheres().count()]
     }

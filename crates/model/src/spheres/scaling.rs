@@ -3,13 +3,11 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
-use stickslip_contact::{Contact, InvalidValue, Law, Normal, Tangential};
+use stickslip_contact::{Contact, Damping, InvalidValue, Law, Normal, Tangential};
 
-use super::bodies::{Body, Material, Sphere};
+use super::bodies::{Body, Material, Sphere, Surface};
 use super::forces::Forces;
 use super::quantity;
-use super::surface::Surface;
-use super::units::Units;
 
 const POSITIVE: &str = "a finite number above 0";
 
@@ -125,7 +123,6 @@ impl BodyPair {
     }
 
     /// Scaled tangential damping b, the ratio of the dampings over α.
-    #[must_use]
     pub fn tangential_damping(&self) -> f64 {
         self.tangential_damping_ratio / self.alpha
     }
@@ -141,7 +138,6 @@ impl BodyPair {
     ///
     /// Source: R. D. Mindlin, J. Appl. Mech. 16, 259 (1949); K. L. Johnson, Contact Mechanics
     /// (1985), section 7.2.
-    #[must_use]
     pub fn mindlin_kappa(&self) -> f64 {
         1.5 * 1.25_f64.powf(0.2) * self.stiffness_ratio / self.alpha
     }
@@ -199,20 +195,17 @@ pub struct Impact {
 
 impl Impact {
     /// Unit of length g_n^{4/5} β^{−2/5} in m.
-    #[must_use]
     pub fn length_unit_m(&self) -> f64 {
         self.normal_m_per_s * self.time_unit_s
     }
 
     /// Unit of force m g_n/time in N.
-    #[must_use]
     pub fn force_unit_n(&self) -> f64 {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
     /// Largest compression ξ in m without damping: (5/4)^{2/5} length units, and one where the
     /// force is linear. With damping ξ stays below it.
-    #[must_use]
     pub fn largest_compression_m(&self) -> f64 {
         match self.pair.law.normal {
             Normal::Hertz => 1.25_f64.powf(0.4) * self.length_unit_m(),
@@ -222,7 +215,6 @@ impl Impact {
 
     /// Largest normal force F_n in N without damping: (5/4)^{3/5} force units, and one where it is
     /// linear.
-    #[must_use]
     pub fn largest_normal_force_n(&self) -> f64 {
         match self.pair.law.normal {
             Normal::Hertz => 1.25_f64.powf(0.6) * self.force_unit_n(),
@@ -233,20 +225,17 @@ impl Impact {
     /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
     /// [`Self::largest_compression_m`], where it is largest. Its κ is [`BodyPair::mindlin_kappa`].
     /// Both belong to Hertz' normal force.
-    #[must_use]
     pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
         let BodyPair { elastic_constant, stiffness_ratio, .. } = self.pair;
         stiffness_ratio * 1.5 * elastic_constant * self.largest_compression_m().sqrt()
     }
 
     /// Elongation ζ in m of a spring with the reduced elongation y: ζ = (μ/α) y length units.
-    #[must_use]
     pub fn spring_m(&self, spring: f64) -> f64 {
         self.pair.surface.friction / self.pair.alpha * spring * self.length_unit_m()
     }
 
     /// Tangential velocity in m/s for the reduced velocity w: (μ/α) w g_n.
-    #[must_use]
     pub fn velocity_m_per_s(&self, velocity: f64) -> f64 {
         self.pair.surface.friction / self.pair.alpha * velocity * self.normal_m_per_s
     }
@@ -273,6 +262,40 @@ impl Reciprocals {
             turning: sphere.radius_m * sphere.radius_m / sphere.moment_of_inertia_kg_m2,
             normal_compliance: sphere.elasticity.normal_compliance(),
             tangential_compliance: sphere.elasticity.tangential_compliance(),
+        }
+    }
+}
+
+/// The units of an impact: of time in s, and of length in m.
+pub(super) struct Units {
+    law: Law,
+    /// The elastic constant over the effective mass.
+    beta: f64,
+    /// β^{−2/5} g_n^{−1/5} for Hertz' force, β^{−1/2} for a linear one.
+    pub time: f64,
+    /// g_n times that.
+    pub length: f64,
+}
+
+impl Units {
+    /// The units under a law with β, the elastic constant over the effective mass.
+    pub fn new(law: Law, beta: f64, normal_m_per_s: f64) -> Self {
+        let time = match law.normal {
+            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
+            Normal::Linear => 1.0 / beta.sqrt(),
+        };
+        Self { law, beta, time, length: normal_m_per_s * time }
+    }
+
+    /// The scaled damping a of a damping time in s, to which it is proportional.
+    pub fn damping(&self, damping_time_s: f64) -> f64 {
+        let &Self { law, beta, time, length } = self;
+        match (law.normal, law.damping) {
+            (_, Damping::None) => 0.0,
+            (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
+            (_, Damping::Linear) => beta * damping_time_s * time,
+            (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
+            (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
         }
     }
 }

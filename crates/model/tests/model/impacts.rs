@@ -3,12 +3,11 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit};
-use stickslip_model::Collider;
 use stickslip_model::spheres::encounter::TOUCH;
 use stickslip_model::spheres::{
-    Elasticity, Encounter, EncounterError, Motion, Outcome, Sphere, Surface, Vector3, Wall,
-    WallMotion,
+    Elasticity, Encounter, Motion, Outcome, Sphere, Surface, Vector3, Wall, WallMotion,
 };
+use stickslip_model::{Collider, InvalidValue};
 
 /// Random numbers that depend on the seed alone (splitmix64).
 struct Random(u64);
@@ -127,7 +126,7 @@ impl Case {
         self.try_encounter().expect("bodies that touch and approach")
     }
 
-    fn try_encounter(&self) -> Result<Encounter, EncounterError> {
+    fn try_encounter(&self) -> Result<Encounter, InvalidValue> {
         let first = (&self.sphere, &self.motion);
         match &self.other {
             Other::Sphere(sphere, motion) => {

@@ -22,6 +22,7 @@ mod history;
 mod impacts;
 mod inside;
 mod largest;
+mod law_borders;
 mod laws;
 mod linear;
 mod margins;

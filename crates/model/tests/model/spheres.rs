@@ -4,10 +4,10 @@ use std::f64::consts::FRAC_PI_4;
 
 use stickslip_model::limits::{coulomb, normal};
 use stickslip_model::spheres::{
-    Body, BodyPair, Elasticity, Encounter, EncounterError, Material, Motion, Outcome, Sphere,
-    Surface, Vector3, Wall, WallMotion,
+    Body, BodyPair, Elasticity, Encounter, Material, Motion, Outcome, Sphere, Surface, Vector3,
+    Wall, WallMotion,
 };
-use stickslip_model::{Collider, Contact};
+use stickslip_model::{Collider, Contact, InvalidValue};
 
 const STEEL: Material =
     Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
@@ -296,7 +296,7 @@ fn bodies_that_do_not_collide() {
         |second: Motion| Encounter::of_spheres((&sphere, &motion), (&sphere, &second), &SURFACE);
     let at = |z| Motion { position_m: Vector3::new(0.0, 0.0, z), ..REST };
     assert!(meet(at(-0.02)).is_ok() && meet(at(-0.02 + 3e-8)).is_ok());
-    let message = |result: Result<Encounter, EncounterError>| result.unwrap_err().to_string();
+    let message = |result: Result<Encounter, InvalidValue>| result.unwrap_err().to_string();
     for (z, word) in
         [(-0.021, "apart"), (-0.019, "overlap"), (0.02, "overlap"), (f64::NAN, "overlap")]
     {

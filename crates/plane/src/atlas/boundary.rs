@@ -27,7 +27,6 @@ pub enum BoundaryKind {
 
 impl BoundaryKind {
     /// Its name in files and pictures.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::EndOfContact => "end-of-contact",
@@ -39,7 +38,6 @@ impl BoundaryKind {
     }
 
     /// The kind of a boundary on which `margin` vanishes.
-    #[must_use]
     pub fn of(contact: &Contact, margin: &Margin) -> Self {
         if !contact.obeys_paper() {
             return Self::of_general(contact, margin);

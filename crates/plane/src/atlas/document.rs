@@ -7,8 +7,8 @@ mod layout;
 mod read;
 mod write;
 
-pub use error::DocumentError;
+pub use error::AtlasDocumentError;
 pub use layout::{
-    BoundaryEnd, BoundaryFields, Document, ExtremalParameter, ExtremumFields, Meeting,
-    RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
+    AtlasDocument, BoundaryEnd, BoundaryFields, ExtremalParameter, ExtremumFields, RegionFields,
+    SCHEMA, Switching, VertexFields, WindowFields,
 };

@@ -1,13 +1,12 @@
 //! What the atlas of collisions has in the places of labels and margins, and what verifies it.
 
 use rayon::prelude::*;
-use stickslip_model::{Collider, Contact, InvalidValue};
+use stickslip_model::{Collider, CollisionError, Contact, InvalidValue};
 use stickslip_tracer::{
     AtlasOptions, Curve, Draft, Executor, Network, NetworkOf, Point, TraceOptions, VerifyOptions,
 };
 
 use super::boundary::{BoundaryKind, itinerary};
-use super::error::LabelError;
 use crate::family::{CollisionFamily, CollisionPlane};
 
 /// The atlas of a plane: regions have itineraries, and boundaries their kinds.
@@ -34,7 +33,7 @@ impl Draft for CollisionDraft<'_> {
     type Family = CollisionFamily;
     type Label = String;
     type Margin = BoundaryKind;
-    type Failure = LabelError;
+    type Failure = CollisionError;
 
     fn family(&self) -> &CollisionFamily {
         &self.family
@@ -80,7 +79,7 @@ impl Draft for CollisionDraft<'_> {
         &self,
         _: &E,
         points: &[Point],
-    ) -> Vec<Result<String, LabelError>> {
+    ) -> Vec<Result<String, CollisionError>> {
         points.par_iter().map(|point| integrated(self.plane, point)).collect()
     }
 
@@ -92,8 +91,8 @@ impl Draft for CollisionDraft<'_> {
 /// The itinerary of the collision at a traced point, by integration.
 ///
 /// # Errors
-/// [`LabelError`] says why the collision cannot be computed.
-pub(super) fn integrated(plane: &CollisionPlane, point: &Point) -> Result<String, LabelError> {
+/// [`CollisionError`] says why the collision cannot be computed.
+pub(super) fn integrated(plane: &CollisionPlane, point: &Point) -> Result<String, CollisionError> {
     Ok(Collider::deciding().collide(plane.contact(point)?)?.itinerary())
 }
 

@@ -1,12 +1,12 @@
 //! Why a window has no atlas.
 
 use stickslip_model::{CollisionError, InvalidValue, OutOfDomain};
-use stickslip_tracer::{SubdivisionError, TraceError, VerifyError};
+use stickslip_tracer::TraceError;
 
-use crate::family::{CollisionFamilyError, CollisionPlane};
+use crate::family::CollisionPlane;
 use crate::sheet::TooNarrow;
 
-/// The reason why a window has no atlas.
+/// The reason why a window has no atlas or no stack.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AtlasError {
     /// No collision has the parameters of the window.
@@ -38,55 +38,42 @@ pub enum AtlasError {
         /// ψ of the run.
         psi: f64,
         /// The error of the run.
-        source: CollisionFamilyError,
+        source: CollisionError,
     },
-    /// The tracer failed for another reason than a run.
+    /// The tracer failed for another reason than a run, or the curves do not make regions.
     #[error(transparent)]
-    Trace(#[from] TraceError<CollisionFamilyError>),
-    /// The curves do not make regions.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
-    /// The verification failed.
-    #[error(transparent)]
-    Verify(#[from] VerifyError),
+    Trace(#[from] TraceError<CollisionError>),
     /// A collision cannot be computed.
     #[error(transparent)]
-    Label(#[from] LabelError),
-}
-
-/// The collision at a place of the window cannot be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LabelError {
-    /// No collision has these parameters.
-    #[error(transparent)]
-    Parameter(#[from] InvalidValue),
-    /// The integration failed.
-    #[error(transparent)]
     Collision(#[from] CollisionError),
+    /// The dampings of a stack are not possible.
+    #[error(
+        "{dampings:?}; expected two dampings above 0 or more, in ascending order, and 0 before \
+         them or not"
+    )]
+    Dampings {
+        /// The dampings.
+        dampings: Vec<f64>,
+    },
+    /// An atlas of a stack failed.
+    #[error("damping = {damping:?}: {source}")]
+    Layer {
+        /// The damping.
+        damping: f64,
+        /// The error of the atlas.
+        source: Box<Self>,
+    },
 }
 
 impl AtlasError {
     /// The error of a trace of `plane`.
-    #[must_use]
-    pub fn of(plane: &CollisionPlane, error: TraceError<CollisionFamilyError>) -> Self {
+    pub fn of(plane: &CollisionPlane, error: TraceError<CollisionError>) -> Self {
         match error {
             TraceError::Run { point, source } => {
                 let contact = plane.contact_or_any(&point);
                 Self::Run { kappa: contact.kappa(), psi: contact.psi(), source }
             }
             error => Self::Trace(error),
-        }
-    }
-
-    /// The error of an atlas of `plane`.
-    pub(crate) fn of_atlas(
-        plane: &CollisionPlane,
-        error: stickslip_tracer::AtlasError<CollisionFamilyError>,
-    ) -> Self {
-        match error {
-            stickslip_tracer::AtlasError::Trace(error) => Self::of(plane, error),
-            stickslip_tracer::AtlasError::Subdivision(error) => Self::Subdivision(error),
-            stickslip_tracer::AtlasError::Verify(error) => Self::Verify(error),
         }
     }
 }

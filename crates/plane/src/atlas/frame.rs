@@ -3,8 +3,8 @@
 use stickslip_model::{InvalidValue, Law, Reduction};
 
 use crate::chart::Chart;
+use crate::chart::Range;
 use crate::family::CollisionPlane;
-use crate::range::Range;
 use crate::sheet::{Sheet, ToleranceRange, TooNarrow};
 
 /// The window of an atlas, and what all its collisions have in common.
@@ -35,7 +35,6 @@ pub struct RatioRange {
 
 impl Frame {
     /// A window of collisions that obey the paper's law.
-    #[must_use]
     pub fn new(kappa: Range, psi: Range, damping: f64) -> Self {
         Self { kappa, psi, ratio: None, damping, law: Law::PAPER, tangential_damping: 0.0 }
     }
@@ -56,7 +55,6 @@ impl Frame {
     }
 
     /// The accuracies in ψ that boundaries can have.
-    #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
         self.sheet().tolerances()
     }

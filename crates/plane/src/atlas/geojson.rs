@@ -4,7 +4,7 @@ use geojson::{Feature, FeatureCollection, Geometry, JsonObject};
 use serde_json::json;
 use stickslip_tracer::{Side, Stretch};
 
-use super::document::Document;
+use super::document::AtlasDocument;
 use super::regions::Atlas;
 use crate::chart::Chart;
 
@@ -14,14 +14,12 @@ type Ring = Vec<[f64; 2]>;
 /// An atlas as GeoJSON: its regions, its boundaries and its vertices, in this order.
 ///
 /// The coordinates are (κ, ψ).
-#[must_use]
 pub fn geojson(atlas: &Atlas) -> FeatureCollection {
-    document_geojson(atlas, &Document::new(atlas))
+    document_geojson(atlas, &AtlasDocument::new(atlas))
 }
 
 /// As [`geojson()`], of an atlas with its document.
-#[must_use]
-pub fn document_geojson(atlas: &Atlas, document: &Document) -> FeatureCollection {
+pub fn document_geojson(atlas: &Atlas, document: &AtlasDocument) -> FeatureCollection {
     let lines = atlas.polylines();
     let regions = document.regions.iter().map(|region| {
         let properties = json!({
@@ -46,7 +44,8 @@ pub fn document_geojson(atlas: &Atlas, document: &Document) -> FeatureCollection
         feature(Geometry::new_line_string(line.iter().copied()), properties)
     });
     let vertices = document.vertices.iter().map(|vertex| {
-        let properties = json!({ "feature": "vertex", "id": vertex.id, "kind": vertex.kind });
+        let kind = vertex.kind.name();
+        let properties = json!({ "feature": "vertex", "id": vertex.id, "kind": kind });
         feature(Geometry::new_point([vertex.kappa, vertex.psi]), properties)
     });
     FeatureCollection::new(regions.chain(boundaries).chain(vertices))

@@ -7,7 +7,7 @@ use stickslip_tracer::{Location, Point, Window};
 
 use super::regions::Atlas;
 use crate::chart::Chart;
-use crate::range::Range;
+use crate::chart::Range;
 
 /// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,6 @@ impl fmt::Display for ParameterPlace {
 impl Atlas {
     /// Looks up a collision by its two parameters: κ and ψ, or the velocities. Within the error of
     /// a boundary, the collision itself decides, computed by the best engine for it.
-    #[must_use]
     pub fn locate(&self, parameters: [f64; 2]) -> Located {
         let [x, y] = parameters;
         let point = self.plane.point(x, y);

@@ -1,10 +1,11 @@
 //! The atlas itself: a window, its boundaries, and the regions between them.
 
-use stickslip_tracer::{Extremum, Names, Point, Subdivision};
+use stickslip_tracer::{Curve, Extremum, Names, Point, Subdivision};
 
 use super::boundary::BoundaryKind;
 use super::frame::{Frame, RatioRange};
 use super::verification::VerificationReport;
+use crate::chart::Chart;
 use crate::family::CollisionPlane;
 
 /// A window divided by its boundaries into regions, which are labelled by itineraries.
@@ -33,19 +34,16 @@ impl Atlas {
     ///
     /// # Panics
     /// If there is no region with this index.
-    #[must_use]
     pub fn itinerary(&self, region: usize) -> &str {
         self.regions.regions()[region].label.as_deref().unwrap_or_default()
     }
 
     /// The window, and what all its collisions have in common.
-    #[must_use]
     pub fn frame(&self) -> Frame {
         Frame { ratio: self.ratio, ..Frame::of(&self.plane) }
     }
 
     /// What speaks against the atlas; `None` if nothing does.
-    #[must_use]
     pub fn objection(&self) -> Option<String> {
         self.report.objection()
     }
@@ -78,7 +76,25 @@ impl Names<String, BoundaryKind> for CollisionPlane {
 /// ```
 /// assert_eq!(stickslip_plane::atlas::switch_count("+o-"), 2);
 /// ```
-#[must_use]
 pub fn switch_count(itinerary: &str) -> usize {
     itinerary.len().saturating_sub(1)
+}
+
+impl Atlas {
+    /// The points (κ, ψ) of each boundary, in the order of the boundaries. They are so close that
+    /// straight lines between them look smooth in a picture of the window.
+    pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {
+        let extent = self.regions.window().extent();
+        let curves = self.regions.curves().iter();
+        curves.map(|curve| polyline(self.plane.chart(), &extent, curve)).collect()
+    }
+}
+
+/// The points (κ, ψ) of a boundary in a window of this extent.
+pub(crate) fn polyline<Label, Margin>(
+    chart: &Chart,
+    extent: &Point,
+    curve: &Curve<Label, Margin>,
+) -> Vec<[f64; 2]> {
+    curve.polyline(extent).iter().map(|point| chart.parameters(point)).collect()
 }

@@ -77,7 +77,7 @@ fn divide_watched(
     let surveyor = Surveyor { options, executor: InParallel, watch };
     let draft = CollisionDraft::new(plane, tolerance)?;
     let drawn = surveyor.draw(&draft, &plane.window());
-    let (drawn, extrema) = drawn.map_err(|error| AtlasError::of_atlas(plane, error))?;
+    let (drawn, extrema) = drawn.map_err(|error| AtlasError::of(plane, error))?;
     let report = VerificationReport::new(plane, &options.verify, &drawn);
     let mut regions = drawn.plane;
     regions.label_rest(|sample| integrated(plane, sample).ok());

@@ -118,7 +118,6 @@ impl VerificationReport {
     }
 
     /// A line that says what speaks against the atlas; `None` if nothing does.
-    #[must_use]
     pub fn objection(&self) -> Option<String> {
         let mismatch = |mismatch: &MismatchFields| {
             let MismatchFields { kappa, psi, region, expected, found, .. } = mismatch;

@@ -3,12 +3,13 @@
 //! ε_t is continuous, but has kinks where the itinerary changes. With the itinerary prescribed it
 //! is smooth, so that the boundary has another margin for each itinerary.
 
+use stickslip_model::CollisionError;
 use stickslip_model::general::CREST;
 use stickslip_solver::margin::{Exit, Margin, Place};
 use stickslip_tracer::{Family, FreeRun, Point};
 
+use super::CollisionPlane;
 use super::general::{self, BEYOND_GUARDS, GeneralFamily};
-use super::{CollisionFamilyError, CollisionPlane};
 use crate::label::{CollisionEvent, CollisionLabel};
 
 /// What stands for a guard in the margin 1 − ε_t.
@@ -61,14 +62,14 @@ fn with_level(mut label: CollisionLabel, eps_t: f64) -> CollisionLabel {
 impl Family for GainingFamily {
     type Label = CollisionLabel;
     type Margin = Margin;
-    type Error = CollisionFamilyError;
+    type Error = CollisionError;
 
-    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionFamilyError> {
+    fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionError> {
         let found = self.0.labelled(point);
         Ok(found.map_or_else(general::failed, |(label, eps_t)| with_level(label, eps_t)))
     }
 
-    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionFamilyError> {
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionError> {
         let found = if is_level(margin) {
             self.level(point, margin).map(|(_, value)| value)
         } else {
@@ -77,7 +78,7 @@ impl Family for GainingFamily {
         Ok(found)
     }
 
-    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionFamilyError> {
+    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionError> {
         let found = if is_level(margin) {
             self.level(point, margin)
         } else {
@@ -90,10 +91,7 @@ impl Family for GainingFamily {
         is_level(margin) || general::is_sure(margin)
     }
 
-    fn free_run(
-        &self,
-        point: &Point,
-    ) -> Result<FreeRun<CollisionLabel, Margin>, CollisionFamilyError> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<CollisionLabel, Margin>, CollisionError> {
         let FreeRun { label, mut margins } = self.0.free_run(point);
         // Margins of the last phase have all exits.
         let is_whole = |exits: &Vec<Exit>| {

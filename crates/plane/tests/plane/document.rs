@@ -1,6 +1,6 @@
 use stickslip_model::Reduction;
 use stickslip_plane::atlas::{
-    Atlas, BoundaryEnd, Document, DocumentError, MismatchFields, RatioRange, SCHEMA,
+    Atlas, AtlasDocument, AtlasDocumentError, BoundaryEnd, MismatchFields, RatioRange, SCHEMA,
 };
 use stickslip_plane::{Range, sealed};
 
@@ -8,9 +8,9 @@ use crate::windows::{crossing, empty, frame, traced};
 
 /// The atlas as it comes back from its JSON.
 fn through_json(verified: &Atlas) -> Atlas {
-    let json = serde_json::to_string(&Document::new(verified)).unwrap();
-    let document: Document = serde_json::from_str(&json).unwrap();
-    assert_eq!(document, Document::new(verified));
+    let json = serde_json::to_string(&AtlasDocument::new(verified)).unwrap();
+    let document: AtlasDocument = serde_json::from_str(&json).unwrap();
+    assert_eq!(document, AtlasDocument::new(verified));
     Atlas::try_from(document).unwrap()
 }
 
@@ -25,7 +25,7 @@ fn an_atlas_comes_back_bit_for_bit() {
 
 #[test]
 fn a_document_has_the_names_of_its_schema() {
-    let json = serde_json::to_value(Document::new(crossing())).unwrap();
+    let json = serde_json::to_value(AtlasDocument::new(crossing())).unwrap();
     let keys = |value: &serde_json::Value| {
         value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ")
     };
@@ -74,7 +74,7 @@ fn a_window_in_impact_ratios_keeps_them_in_the_file() {
     let ratio = RatioRange { range: Range { low: 3.5, high: 4.2 }, reduction };
     let mut verified = empty().clone();
     verified.ratio = Some(ratio);
-    let document = Document::new(&verified);
+    let document = AtlasDocument::new(&verified);
     assert_eq!(document.window.ratio, Some([3.5, 4.2]));
     assert_eq!((document.window.mu, document.window.alpha), (Some(0.4), Some(2.0 / 7.0)));
     assert_eq!(through_json(&verified).frame(), frame((5.0, 6.0), (2.5, 3.0)));
@@ -82,15 +82,15 @@ fn a_window_in_impact_ratios_keeps_them_in_the_file() {
 
 #[test]
 fn ends_of_boundaries_are_on_the_window_or_at_the_crossing() {
-    let document = Document::new(crossing());
+    let document = AtlasDocument::new(crossing());
     let ends = document.boundaries.iter().flat_map(|boundary| [boundary.start, boundary.end]);
     let at_vertex = ends.filter(|end| *end == BoundaryEnd::Vertex).count();
     assert_eq!(at_vertex, 4);
 }
 
 /// What the reader says of the document of the crossing after `change`.
-fn refused(change: impl FnOnce(&mut Document)) -> (DocumentError, String) {
-    let mut document = Document::new(crossing());
+fn refused(change: impl FnOnce(&mut AtlasDocument)) -> (AtlasDocumentError, String) {
+    let mut document = AtlasDocument::new(crossing());
     change(&mut document);
     let error = Atlas::try_from(document).unwrap_err();
     let text = error.to_string();
@@ -100,7 +100,7 @@ fn refused(change: impl FnOnce(&mut Document)) -> (DocumentError, String) {
 #[test]
 fn another_layout_is_refused() {
     let (error, text) = refused(|document| document.schema = "stickslip.atlas/2".to_owned());
-    assert_eq!(error, DocumentError::Schema { found: "stickslip.atlas/2".to_owned() });
+    assert_eq!(error, AtlasDocumentError::Schema { found: "stickslip.atlas/2".to_owned() });
     assert_eq!(text, r#"schema = "stickslip.atlas/2": expected "stickslip.atlas/1""#);
 }
 
@@ -119,12 +119,12 @@ fn an_atlas_against_which_something_speaks_is_refused() {
     });
     let objection = "1 mismatches, 0 unresolved, 0 findings, 0 points without a label; the first: \
                      kappa = 18.5, psi = 0.6 has +, its region 2 +o-";
-    assert_eq!(error, DocumentError::Doubtful { objection: objection.to_owned() });
+    assert_eq!(error, AtlasDocumentError::Doubtful { objection: objection.to_owned() });
     assert!(text.contains(objection), "{text}");
     let (error, _) = refused(|document| document.verification.agrees = false);
     let objection = "0 mismatches, 0 unresolved, 0 findings, 0 points without a label; the first: \
                      Euler's formula does not hold";
-    assert_eq!(error, DocumentError::Doubtful { objection: objection.to_owned() });
+    assert_eq!(error, AtlasDocumentError::Doubtful { objection: objection.to_owned() });
 }
 
 #[test]
@@ -133,44 +133,44 @@ fn an_empty_or_negative_window_is_refused() {
         [[0.0, 20.0], [-1.0, 20.0], [20.0, 20.0], [20.0, 18.0], [18.0, f64::INFINITY]]
     {
         let (error, _) = refused(|document| document.window.kappa = [low, high]);
-        assert_eq!(error, DocumentError::Window { name: "kappa", low, high });
+        assert_eq!(error, AtlasDocumentError::Window { name: "kappa", low, high });
         let (error, text) = refused(|document| document.window.psi = [low, high]);
-        assert_eq!(error, DocumentError::Window { name: "psi", low, high });
+        assert_eq!(error, AtlasDocumentError::Window { name: "psi", low, high });
         let expected =
             format!("window.psi = [{low:?}, {high:?}]: expected [LO, HI] with 0 < LO < HI");
         assert_eq!(text, expected);
     }
     let (error, _) = refused(|document| document.window.damping = -0.1);
-    assert_eq!(error, DocumentError::Damping { damping: -0.1 });
+    assert_eq!(error, AtlasDocumentError::Damping { damping: -0.1 });
     let (error, text) = refused(|document| document.window.psi = [0.55, 0.55 + 1e-8]);
-    assert!(matches!(error, DocumentError::Narrow(size) if size.height < 1e-7), "{text}");
+    assert!(matches!(error, AtlasDocumentError::Narrow(size) if size.height < 1e-7), "{text}");
 }
 
 #[test]
 fn a_tolerance_out_of_range_is_refused() {
     for tolerance in [0.0, -1e-10, 1.1e-6] {
         let (error, _) = refused(|document| document.tolerance = tolerance);
-        assert_eq!(error, DocumentError::Tolerance { tolerance });
+        assert_eq!(error, AtlasDocumentError::Tolerance { tolerance });
     }
     let (error, _) = refused(|document| document.tolerance = f64::NAN);
-    assert!(matches!(error, DocumentError::Tolerance { .. }));
+    assert!(matches!(error, AtlasDocumentError::Tolerance { .. }));
 }
 
 #[test]
 fn entries_out_of_place_are_refused() {
     let (error, _) = refused(|document| document.boundaries[1].id = 7);
-    assert_eq!(error, DocumentError::Id { list: "boundaries", index: 1, id: 7 });
+    assert_eq!(error, AtlasDocumentError::Id { list: "boundaries", index: 1, id: 7 });
     let (error, _) = refused(|document| document.vertices[0].id = 1);
-    assert_eq!(error, DocumentError::Id { list: "vertices", index: 0, id: 1 });
+    assert_eq!(error, AtlasDocumentError::Id { list: "vertices", index: 0, id: 1 });
     let (error, text) = refused(|document| document.regions.swap(2, 3));
-    assert_eq!(error, DocumentError::Id { list: "regions", index: 2, id: 3 });
+    assert_eq!(error, AtlasDocumentError::Id { list: "regions", index: 2, id: 3 });
     assert_eq!(text, "regions[2].id = 3; expected 2, its place in the list");
 }
 
 #[test]
 fn points_that_no_collision_can_have_are_refused() {
     let point =
-        |place: &str, kappa, psi| DocumentError::Point { place: place.to_owned(), kappa, psi };
+        |place: &str, kappa, psi| AtlasDocumentError::Point { place: place.to_owned(), kappa, psi };
     let (error, _) = refused(|document| document.boundaries[1].points[0] = [-18.0, 0.6]);
     assert_eq!(error, point("boundaries[1].points[0]", -18.0, 0.6));
     let (error, _) = refused(|document| {
@@ -185,20 +185,20 @@ fn points_that_no_collision_can_have_are_refused() {
 
 #[test]
 fn a_boundary_with_too_few_points_or_tangents_is_refused() {
-    let points = Document::new(crossing()).boundaries[0].points.len();
+    let points = AtlasDocument::new(crossing()).boundaries[0].points.len();
     let (error, _) = refused(|document| {
         document.boundaries[0].points.truncate(1);
         document.boundaries[0].tangents.truncate(1);
     });
-    assert_eq!(error, DocumentError::Tangents { boundary: 0, points: 1, tangents: 1 });
+    assert_eq!(error, AtlasDocumentError::Tangents { boundary: 0, points: 1, tangents: 1 });
     let (error, _) = refused(|document| document.boundaries[0].tangents.truncate(points - 1));
-    assert_eq!(error, DocumentError::Tangents { boundary: 0, points, tangents: points - 1 });
+    assert_eq!(error, AtlasDocumentError::Tangents { boundary: 0, points, tangents: points - 1 });
 }
 
 #[test]
 fn what_is_not_an_itinerary_is_refused() {
     for (switch_count, itinerary) in [(1, "+o-"), (0, ""), (2, "+x-"), (1, "+-"), (2, "+oo")] {
-        let switching = |place: &str| DocumentError::Switching {
+        let switching = |place: &str| AtlasDocumentError::Switching {
             place: place.to_owned(),
             switch_count,
             itinerary: itinerary.to_owned(),
@@ -224,10 +224,10 @@ fn what_is_not_an_itinerary_is_refused() {
 #[test]
 fn boundaries_that_make_no_regions_are_refused() {
     let (error, text) = refused(|document| document.boundaries[0].vertices = Some([0, 99]));
-    assert!(matches!(error, DocumentError::Subdivision(_)), "{text}");
+    assert!(matches!(error, AtlasDocumentError::Subdivision(_)), "{text}");
     assert!(text.starts_with("the boundaries make no regions: "), "{text}");
     let (error, text) = refused(|document| document.boundaries[0].tangents[0] = [0.6, 0.6]);
-    assert!(matches!(error, DocumentError::Subdivision(_)), "{text}");
+    assert!(matches!(error, AtlasDocumentError::Subdivision(_)), "{text}");
 }
 
 #[test]
@@ -236,30 +236,30 @@ fn boundaries_that_contradict_each_other_are_refused() {
         let boundary = &mut document.boundaries[0];
         std::mem::swap(&mut boundary.below, &mut boundary.above);
     });
-    assert!(matches!(error, DocumentError::Finding(_)), "{text}");
+    assert!(matches!(error, AtlasDocumentError::Finding(_)), "{text}");
     assert!(text.starts_with("the boundaries do not fit together: "), "{text}");
 }
 
 #[test]
 fn regions_that_the_boundaries_do_not_make_are_refused() {
     let (error, _) = refused(|document| document.regions.truncate(3));
-    assert_eq!(error, DocumentError::Regions { listed: 3, made: 4 });
+    assert_eq!(error, AtlasDocumentError::Regions { listed: 3, made: 4 });
     let (error, _) = refused(|document| {
         let sample = document.regions[0].sample;
         document.regions[0].sample = document.regions[1].sample;
         document.regions[1].sample = sample;
     });
-    assert_eq!(error, DocumentError::Region { region: 0 });
+    assert_eq!(error, AtlasDocumentError::Region { region: 0 });
     let (error, text) = refused(|document| {
         document.regions[3].switching = document.regions[0].switching.clone();
     });
-    assert_eq!(error, DocumentError::Region { region: 3 });
+    assert_eq!(error, AtlasDocumentError::Region { region: 3 });
     assert_eq!(text, "regions[3] is not what the boundaries around it say");
 }
 
 #[test]
 fn a_sealed_document_that_has_changed_is_noticed_wherever_it_has() {
-    let text = sealed::to_string(&Document::new(crossing())).unwrap();
+    let text = sealed::to_string(&AtlasDocument::new(crossing())).unwrap();
     assert_eq!(sealed::check(text.as_bytes()), Ok(()));
     // The layout of the text does not matter.
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();

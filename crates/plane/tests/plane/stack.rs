@@ -6,16 +6,31 @@ use std::sync::LazyLock;
 use stickslip_model::exact;
 use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Contact, InvalidValue};
-use stickslip_plane::atlas::{Frame, trace};
+use stickslip_plane::atlas::{AtlasError, Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, StackDocument, stack};
+use stickslip_plane::stack::{DampingLayer, DampingStack, stack};
 use stickslip_solver::margin::{Hint, Margin, Place};
+use stickslip_tracer::Change;
 
 use crate::windows::frame;
 
-fn made(dampings: &[f64]) -> Result<DampingStack, DampingStackError> {
+fn made(dampings: &[f64]) -> Result<DampingStack, AtlasError> {
     let frame = frame((5.0, 20.0), (0.2, 2.5));
     stack(frame, dampings, frame.tolerances().usual, SILENT)
+}
+
+/// Where special points meet.
+struct Met {
+    kind: &'static str,
+    damping: f64,
+    kappa: f64,
+    psi: f64,
+}
+
+fn met(stack: &DampingStack, change: &Change<String>) -> Option<Met> {
+    let meeting = change.meeting?;
+    let [kappa, psi] = stack.plane.sheet().snapped(&meeting.point);
+    Some(Met { kind: meeting.kind.name(), damping: meeting.value, kappa, psi })
 }
 
 /// A stack that several tests share.
@@ -68,11 +83,11 @@ fn changes_lead_from_one_atlas_to_the_next() {
 #[test]
 fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidValue> {
     let mut tried = 0;
-    for change in StackDocument::from(&*STACK).changes {
-        let Some(meeting) = &change.meeting else { continue };
+    for change in &STACK.changes {
+        let Some(meeting) = met(&STACK, change) else { continue };
         let [low, high] = change.between;
         assert!(low < meeting.damping && meeting.damping < high);
-        for effect in change.effects.iter().filter(|effect| effect.effect == "born") {
+        for effect in change.effects.iter().filter(|effect| effect.name() == "born") {
             tried += 1;
             let seen = |damping: f64| -> Result<bool, InvalidValue> {
                 for (i, j) in (-60..=60).flat_map(|i| (-60..=60).map(move |j| (i, j))) {
@@ -82,7 +97,7 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidVal
                         continue;
                     }
                     let collision = exact::collide(Contact::new(kappa, psi, damping)?).unwrap();
-                    if collision.itinerary() == effect.itinerary {
+                    if collision.itinerary() == *effect.label() {
                         return Ok(true);
                     }
                 }
@@ -115,10 +130,10 @@ fn dies_in_a_swallowtail(kappa: (f64, f64), psi: (f64, f64)) -> Result<(), Inval
     let tolerance = window.tolerances().usual;
     let stack = stack(window, &[0.41, 0.4108, 0.412], tolerance, SILENT).unwrap();
     assert_eq!(stack.objection(), None, "{:?}", stack.changes);
-    let [change] = &StackDocument::from(&stack).changes[..] else { panic!("{:?}", stack.changes) };
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
     let [effect] = &change.effects[..] else { panic!("{change:?}") };
-    assert_eq!((effect.effect, &effect.itinerary[..]), ("dies", "o+o+o-"));
-    let meeting = change.meeting.as_ref().unwrap();
+    assert_eq!((effect.name(), &effect.label()[..]), ("dies", "o+o+o-"));
+    let meeting = met(&stack, change).unwrap();
     assert_eq!(meeting.kind, "swallowtail");
     let [low, high] = change.between;
     assert!(low < meeting.damping && meeting.damping < high, "{change:?}");
@@ -152,8 +167,8 @@ fn a_meeting_beside_a_change_is_not_its_cause() {
     let tolerance = window.tolerances().usual;
     let stack = stack(window, &[4e-4, 0.002], tolerance, SILENT).unwrap();
     assert_eq!(stack.objection(), None, "{:?}", stack.changes);
-    let [change] = &StackDocument::from(&stack).changes[..] else { panic!("{:?}", stack.changes) };
-    let meeting = change.meeting.as_ref().unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let meeting = met(&stack, change).unwrap();
     let [low, high] = change.between;
     assert!(high - low < 2e-4 * low && low < meeting.damping && meeting.damping < high);
     let regions = [0.99995, 1.00005].map(|part| {
@@ -172,8 +187,8 @@ fn a_region_is_born_in_a_sharp_crossing_on_the_edge() {
     let window = frame((0.3, 0.6), (0.01, 0.5));
     let stack = stack(window, &[4.59e-6, 4.6e-6], window.tolerances().usual, SILENT).unwrap();
     assert_eq!(stack.objection(), None, "{:?}", stack.changes);
-    let [change] = &StackDocument::from(&stack).changes[..] else { panic!("{:?}", stack.changes) };
-    let meeting = change.meeting.as_ref().unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let meeting = met(&stack, change).unwrap();
     assert_eq!((meeting.kind, meeting.psi), ("edge", 0.01));
     let [low, high] = change.between;
     assert!(high - low < 1.1e-5 * low && low < meeting.damping && meeting.damping < high);
@@ -193,7 +208,7 @@ fn a_layer_that_was_not_compared_is_an_objection() {
 #[test]
 fn dampings_ascend_from_above_zero() {
     for dampings in [&[][..], &[0.0, 0.1], &[0.2, 0.1], &[0.1, 0.0, 0.2], &[-0.1, 0.1], &[0.1]] {
-        let refused = DampingStackError::Dampings { dampings: dampings.to_vec() };
+        let refused = AtlasError::Dampings { dampings: dampings.to_vec() };
         assert_eq!(made(dampings).unwrap_err(), refused);
     }
 }

@@ -1,6 +1,6 @@
 //! The bytes of tiles.
 
-use stickslip_plane::tile::{NO_COUNT, NO_EPS_T, Tile};
+use stickslip_plane::sweep::{NO_COUNT, NO_EPS_T, Tile};
 
 const LABEL: &str = "a map\ntile 3\n";
 

@@ -5,7 +5,7 @@ use stickslip_model::{InvalidValue, Law, Normal, Tangential};
 
 /// Two bodies whose surfaces are fitted; the second one is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bodies {
+pub struct FittedBodies {
     /// What the contact feels. Those properties of the surfaces that are fitted do not count.
     pub pair: BodyPair,
     /// Distance of the centre of the first sphere from the contact over its moment of inertia, in
@@ -14,8 +14,7 @@ pub struct Bodies {
 }
 
 /// The numbers on which the impacts at all angles depend.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Values {
     /// κ at normal incidence.
     pub kappa: f64,
@@ -31,9 +30,8 @@ pub struct Values {
 /// small enough for all laws.
 const SMALL_TIME: f64 = 1e-200;
 
-impl Bodies {
+impl FittedBodies {
     /// A sphere that hits another body.
-    #[must_use]
     pub fn of_sphere(sphere: &Sphere, pair: BodyPair) -> Self {
         let arm_per_inertia = Some(sphere.radius_m / sphere.moment_of_inertia_kg_m2);
         Self { pair, arm_per_inertia }
@@ -66,7 +64,6 @@ impl Bodies {
     }
 
     /// Whether lengths and velocities are scaled.
-    #[must_use]
     pub fn are_scaled(&self) -> bool {
         self.arm_per_inertia.is_none()
     }

@@ -8,7 +8,7 @@ use super::data::{Datum, Measured};
 
 /// A named column, in which values may be missing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct MeasuredColumn {
     /// The name of a quantity with its unit, perhaps with `_error` at its end.
     pub name: String,
     /// A value for each row.
@@ -72,10 +72,10 @@ impl Meaning {
 /// them.
 ///
 /// ```
-/// use stickslip_practice::fit::{Column, Measured, data};
+/// use stickslip_practice::fit::{MeasuredColumn, Measured, data};
 ///
 /// let column = |name: &str, values: &[Option<f64>]| {
-///     Column { name: name.to_owned(), values: values.to_vec() }
+///     MeasuredColumn { name: name.to_owned(), values: values.to_vec() }
 /// };
 /// let columns = [
 ///     column("centre_impact_angle_deg", &[Some(30.0), Some(60.0)]),
@@ -86,26 +86,31 @@ impl Meaning {
 /// assert_eq!(data.len(), 3);
 /// assert_eq!((data[2].row, data[2].quantity, data[2].value), (3, Measured::Spin, 400.0));
 /// assert!((data[2].normal_m_per_s - 2.0).abs() < 1e-12);
-/// # Ok::<(), stickslip_practice::fit::InvalidColumns>(())
+/// # Ok::<(), stickslip_model::InvalidValue>(())
 /// ```
 ///
 /// # Errors
-/// [`InvalidColumns`]: columns are missing, unknown or contradict each other, a row has no impact,
+/// [`InvalidValue`]: columns are missing, unknown or contradict each other, a row has no impact,
 /// or an angle is out of range. Values of other quantities are checked by the fit.
 pub fn data(
-    columns: &[Column],
+    columns: &[MeasuredColumn],
     rows: &[usize],
     speed_m_per_s: Option<f64>,
     scaled: bool,
-) -> Result<Vec<Datum>, InvalidColumns> {
-    let mut known: Vec<(&Column, Meaning)> = Vec::new();
+) -> Result<Vec<Datum>, InvalidValue> {
+    let mut known: Vec<(&MeasuredColumn, Meaning)> = Vec::new();
     for column in columns {
-        let name = || column.name.clone();
         let Some(meaning) = Meaning::find(&column.name) else {
-            return Err(InvalidColumns::Unknown { name: name() });
+            let quantities = Meaning::NAMES.map(|(name, _)| name).join(", ");
+            return Err(InvalidValue::phrase(
+                format!("column '{}'", column.name),
+                "is unknown",
+                format!("{quantities}, or one of the measured quantities with _error"),
+            ));
         };
         if let Some((other, _)) = known.iter().find(|(_, other)| meaning.clashes(*other)) {
-            return Err(InvalidColumns::Twice { first: other.name.clone(), second: name() });
+            let phrase = format!("'{}' and '{}' are both given", other.name, column.name);
+            return Err(InvalidValue::phrase("the columns", phrase, "one of them"));
         }
         known.push((column, meaning));
     }
@@ -114,13 +119,15 @@ pub fn data(
     if let Some((column, _)) = known.iter().find(|(_, it)| {
         matches!(it, Meaning::Error(quantity, unit) if column(Meaning::Measured(*quantity, *unit)).is_none())
     }) {
-        return Err(InvalidColumns::Alone { name: column.name.clone() });
+        let name = format!("column '{}'", column.name);
+        let phrase = "is given without its quantity";
+        return Err(InvalidValue::phrase(name, phrase, "both, in the same unit"));
     }
     let mut data = Vec::new();
     for (index, &row) in rows.iter().enumerate() {
         for (found, meaning) in &known {
             let Meaning::Measured(quantity, unit) = *meaning else { continue };
-            let at = |column: &Column| column.values.get(index).copied().flatten();
+            let at = |column: &MeasuredColumn| column.values.get(index).copied().flatten();
             let Some(value) = at(found) else { continue };
             if quantity == Measured::ReboundAngle && !quantity.allows(value * unit) {
                 let expected = if unit == 1.0 {
@@ -128,7 +135,7 @@ pub fn data(
                 } else {
                     "an angle between -90 and 90 degrees"
                 };
-                return Err(InvalidValue::new(in_row(row, found), value, expected).into());
+                return Err(InvalidValue::new(in_row(row, found), value, expected));
             }
             let (normal_m_per_s, tangential_m_per_s) = impacts.at(index, row)?;
             let error = column(Meaning::Error(quantity, unit)).and_then(at);
@@ -147,16 +154,24 @@ pub fn data(
 
 /// Where the impact of a row is.
 enum Impacts<'a> {
-    Angle { angle: &'a Column, unit: f64, speed: Option<&'a Column>, all: Option<f64> },
-    Velocities { normal: &'a Column, tangential: &'a Column },
+    Angle {
+        angle: &'a MeasuredColumn,
+        unit: f64,
+        speed: Option<&'a MeasuredColumn>,
+        all: Option<f64>,
+    },
+    Velocities {
+        normal: &'a MeasuredColumn,
+        tangential: &'a MeasuredColumn,
+    },
 }
 
 impl<'a> Impacts<'a> {
     fn new(
-        known: &[(&'a Column, Meaning)],
+        known: &[(&'a MeasuredColumn, Meaning)],
         all: Option<f64>,
         scaled: bool,
-    ) -> Result<Self, InvalidColumns> {
+    ) -> Result<Self, InvalidValue> {
         let column = |meaning| known.iter().find(|(_, it)| *it == meaning).map(|(it, _)| *it);
         let angle = known.iter().find_map(|(column, meaning)| match meaning {
             Meaning::Angle(unit) => Some((*column, *unit)),
@@ -166,29 +181,38 @@ impl<'a> Impacts<'a> {
         let velocities = (column(Meaning::Normal), column(Meaning::Tangential));
         let told = [speed, velocities.0, velocities.1].into_iter().flatten().next();
         if let (true, Some(column)) = (scaled, told) {
-            return Err(InvalidColumns::Scaled { name: column.name.clone() });
+            let name = format!("column '{}'", column.name);
+            let phrase = "has no meaning without bodies";
+            return Err(InvalidValue::phrase(name, phrase, "angles alone"));
         }
         match (angle, velocities) {
             (Some((angle, unit)), (None, None)) => {
                 let all = if scaled { Some(1.0) } else { all };
                 if speed.is_some() == all.is_some() {
-                    return Err(InvalidColumns::Speed { both: speed.is_some() });
+                    let how = if speed.is_some() { "is given twice" } else { "is missing" };
+                    let expected = "either a column speed_m_per_s or one speed for all rows";
+                    return Err(InvalidValue::phrase("the speed", how, expected));
                 }
                 Ok(Self::Angle { angle, unit, speed, all })
             }
             (None, (Some(normal), Some(tangential))) if speed.is_none() && all.is_none() => {
                 Ok(Self::Velocities { normal, tangential })
             }
-            _ => Err(InvalidColumns::NoImpact),
+            _ => Err(InvalidValue::phrase(
+                "no",
+                "impact",
+                "either the column centre_impact_angle_deg or centre_impact_angle_rad, or both \
+                 normal_m_per_s and tangential_m_per_s without any speed",
+            )),
         }
     }
 
     /// The normal and the tangential velocity of a row.
-    fn at(&self, index: usize, row: usize) -> Result<(f64, f64), InvalidColumns> {
-        let number = |column: &Column| {
-            let name = || column.name.clone();
+    fn at(&self, index: usize, row: usize) -> Result<(f64, f64), InvalidValue> {
+        let number = |column: &MeasuredColumn| {
             let value = column.values.get(index).copied().flatten();
-            value.ok_or_else(|| InvalidColumns::Missing { row, name: name() })
+            let missing = || InvalidValue::phrase(in_row(row, column), "is missing", "a number");
+            value.ok_or_else(missing)
         };
         match self {
             Self::Velocities { normal, tangential } => Ok((number(normal)?, number(tangential)?)),
@@ -201,7 +225,7 @@ impl<'a> Impacts<'a> {
                     } else {
                         "an angle from 0 to below 90 degrees"
                     };
-                    return Err(InvalidValue::new(in_row(row, angle), value, expected).into());
+                    return Err(InvalidValue::new(in_row(row, angle), value, expected));
                 }
                 let speed = match (speed, all) {
                     (Some(column), _) => number(column)?,
@@ -214,66 +238,6 @@ impl<'a> Impacts<'a> {
     }
 }
 
-fn in_row(row: usize, column: &Column) -> String {
+fn in_row(row: usize, column: &MeasuredColumn) -> String {
     format!("row {row}: {}", column.name)
-}
-
-/// Columns do not describe measured impacts.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidColumns {
-    /// A column has no meaning.
-    #[error(
-        "column '{name}' is unknown; expected {}, or one of the measured quantities with _error",
-        Meaning::NAMES.map(|(name, _)| name).join(", ")
-    )]
-    Unknown {
-        /// Its name.
-        name: String,
-    },
-    /// Two columns have the same meaning.
-    #[error("the columns '{first}' and '{second}' are both given; expected one of them")]
-    Twice {
-        /// One name.
-        first: String,
-        /// The other name.
-        second: String,
-    },
-    /// Errors without their quantity.
-    #[error("column '{name}' is given without its quantity; expected both, in the same unit")]
-    Alone {
-        /// The name of the errors.
-        name: String,
-    },
-    /// The columns do not determine the impacts.
-    #[error(
-        "no impact; expected either the column centre_impact_angle_deg or centre_impact_angle_rad, or \
-         both normal_m_per_s and tangential_m_per_s without any speed"
-    )]
-    NoImpact,
-    /// The speed is not given, or given twice.
-    #[error(
-        "the speed is {}; expected either a column speed_m_per_s or one speed for all rows",
-        if *both { "given twice" } else { "missing" }
-    )]
-    Speed {
-        /// Whether the speed is given twice.
-        both: bool,
-    },
-    /// A velocity without bodies.
-    #[error("column '{name}' has no meaning without bodies; expected angles alone")]
-    Scaled {
-        /// The name of the column.
-        name: String,
-    },
-    /// A row has no impact.
-    #[error("row {row}: {name} is missing; expected a number")]
-    Missing {
-        /// The row.
-        row: usize,
-        /// The name of the column.
-        name: String,
-    },
-    /// An angle is out of range.
-    #[error(transparent)]
-    Angle(#[from] InvalidValue),
 }

@@ -4,14 +4,13 @@ use stickslip_model::{CollisionFailure, Engine};
 use stickslip_plane::{Oblique, Range};
 
 use super::FitError;
-use super::bodies::{Bodies, Units, Values};
+use super::bodies::{FittedBodies, Units, Values};
 use super::data::{Datum, Measured};
 use super::problem::predicted_at;
 
 /// The best fit at all angles, at one speed.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Course {
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct FittedCourse {
     /// The angles from the normal in rad.
     pub angles_rad: Range,
     /// Where the switches change, in rising order of angles.
@@ -19,13 +18,12 @@ pub struct Course {
     /// Whether the tracer of boundaries could explain everything that it saw.
     pub resolved: bool,
     /// What the model says of each measured quantity, at the best and the next minima.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub curves: Vec<Curve>,
+    #[serde(skip)]
+    pub curves: Vec<FittedCurve>,
 }
 
 /// An angle at which the switches change.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Boundary {
     /// The angle from the normal in rad.
     pub angle_rad: f64,
@@ -37,7 +35,7 @@ pub struct Boundary {
 
 /// A quantity over the angle, by one of the minima.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct FittedCurve {
     /// The quantity.
     pub quantity: Measured,
     /// The index of the minimum.
@@ -51,13 +49,13 @@ pub const DRAWN: usize = 3;
 /// Points of a curve.
 const POINTS: u32 = 361;
 
-impl Course {
+impl FittedCourse {
     /// The course of `minima`, the best one first, over the angles of the data and some more.
     ///
     /// # Errors
     /// [`FitError`]: an impact cannot be computed.
     pub fn new(
-        bodies: &Bodies,
+        bodies: &FittedBodies,
         units: &Units,
         data: &[Datum],
         minima: &[Values],
@@ -95,12 +93,12 @@ impl Course {
 }
 
 fn curves(
-    bodies: &Bodies,
+    bodies: &FittedBodies,
     units: &Units,
     data: &[Datum],
     minima: &[Values],
     angles_rad: Range,
-) -> Result<Vec<Curve>, FitError> {
+) -> Result<Vec<FittedCurve>, FitError> {
     let measured = |quantity: &Measured| data.iter().any(|datum| datum.quantity == *quantity);
     let mut curves = Vec::new();
     for quantity in Measured::ALL.into_iter().filter(measured) {
@@ -112,7 +110,7 @@ fn curves(
                 Ok((angle.to_degrees(), quantity.shown(value)))
             };
             let points: Result<Vec<_>, FitError> = (0..POINTS).map(point).collect();
-            curves.push(Curve { quantity, minimum, points: points? });
+            curves.push(FittedCurve { quantity, minimum, points: points? });
         }
     }
     Ok(curves)

@@ -23,7 +23,6 @@ impl Measured {
 
     /// The name in files, with the unit: `eps_n`, `eps_t`, `centre_e_t`, `spin_rad_per_s` or
     /// `centre_rebound_angle_rad`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::EpsN => "eps_n",
@@ -36,7 +35,6 @@ impl Measured {
 
     /// The name of the column of a table for people, with the unit: as [`Self::name`], but angles
     /// are in degrees.
-    #[must_use]
     pub fn heading(self) -> &'static str {
         match self {
             Self::ReboundAngle => "centre_rebound_angle_deg",
@@ -45,13 +43,11 @@ impl Measured {
     }
 
     /// A value as people read it, in the unit of [`Self::heading`].
-    #[must_use]
     pub fn shown(self, value: f64) -> f64 {
         if self == Self::ReboundAngle { value.to_degrees() } else { value }
     }
 
     /// The quantity with this [`Self::name`].
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quantity| quantity.name() == name)
     }
@@ -75,8 +71,6 @@ impl Measured {
         }
     }
 }
-
-#[cfg(feature = "serde")]
 impl serde::Serialize for Measured {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
@@ -84,8 +78,7 @@ impl serde::Serialize for Measured {
 }
 
 /// One measured value. The spheres do not spin before the impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Datum {
     /// The number of the row that the value is from, which residuals repeat.
     pub row: usize,
@@ -103,7 +96,6 @@ pub struct Datum {
 
 impl Datum {
     /// A value measured at `angle_rad` from the normal, at `speed_m_per_s`.
-    #[must_use]
     pub fn at_angle(
         angle_rad: f64,
         speed_m_per_s: f64,
@@ -122,13 +114,11 @@ impl Datum {
     }
 
     /// The angle of the impact from the normal in rad.
-    #[must_use]
     pub fn angle_rad(&self) -> f64 {
         self.tangential_m_per_s.atan2(self.normal_m_per_s)
     }
 
     /// The speed in m/s.
-    #[must_use]
     pub fn speed_m_per_s(&self) -> f64 {
         self.normal_m_per_s.hypot(self.tangential_m_per_s)
     }

@@ -20,7 +20,6 @@ impl Free {
     pub const ALL: [Self; 4] = [Self::Kappa, Self::Mu, Self::TangentialDamping, Self::Damping];
 
     /// The name in files: `kappa`, `mu`, `tangential_damping` or `damping`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Kappa => "kappa",
@@ -31,14 +30,11 @@ impl Free {
     }
 
     /// The number with a name; `k_t` is another one for `kappa`.
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         let name = if name == "k_t" { "kappa" } else { name };
         Self::ALL.into_iter().find(|free| free.name() == name)
     }
 }
-
-#[cfg(feature = "serde")]
 impl serde::Serialize for Free {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
@@ -46,8 +42,7 @@ impl serde::Serialize for Free {
 }
 
 /// The ranges in which numbers are fitted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Ranges {
     /// κ at normal incidence.
     pub kappa: Range,
@@ -74,7 +69,6 @@ impl Default for Ranges {
 
 impl Ranges {
     /// The range of a number.
-    #[must_use]
     pub fn of(&self, free: Free) -> Range {
         match free {
             Free::Kappa => self.kappa,

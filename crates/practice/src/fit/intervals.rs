@@ -7,38 +7,34 @@ use super::scan::{Line, Lines};
 use super::search::root;
 
 /// The interval of a fitted number, which may consist of several pieces.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "IntervalFields"))]
-pub struct Interval {
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(into = "IntervalFields")]
+pub struct ConfidenceInterval {
     /// The number.
     pub parameter: Free,
     /// The pieces, in rising order. `None` if there are as many free numbers as data and the size
     /// of the errors is not known.
-    pub pieces: Option<Vec<Piece>>,
+    pub pieces: Option<Vec<IntervalPiece>>,
 }
 
 /// An interval in the file of a fit.
-#[cfg(feature = "serde")]
 #[derive(serde::Serialize)]
 struct IntervalFields {
     parameter: Free,
-    pieces: Option<Vec<Piece>>,
+    pieces: Option<Vec<IntervalPiece>>,
     verdict: String,
 }
-
-#[cfg(feature = "serde")]
-impl From<Interval> for IntervalFields {
-    fn from(interval: Interval) -> Self {
+impl From<ConfidenceInterval> for IntervalFields {
+    fn from(interval: ConfidenceInterval) -> Self {
         let verdict = interval.verdict();
-        let Interval { parameter, pieces } = interval;
+        let ConfidenceInterval { parameter, pieces } = interval;
         Self { parameter, pieces, verdict }
     }
 }
 
 /// A piece of an interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Piece {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct IntervalPiece {
     /// Its lower end.
     pub low: f64,
     /// Its upper end.
@@ -49,24 +45,22 @@ pub struct Piece {
     pub to_end_of_range: bool,
 }
 
-impl Interval {
+impl ConfidenceInterval {
     /// Whether the interval holds a value; `None` without an interval.
-    #[must_use]
     pub fn holds(&self, value: f64) -> Option<bool> {
         let pieces = self.pieces.as_ref()?;
         Some(pieces.iter().any(|piece| (piece.low..=piece.high).contains(&value)))
     }
 
     /// What the data decide of the number, and what they leave open, in a sentence.
-    #[must_use]
     pub fn verdict(&self) -> String {
         let name = self.parameter.name();
         let Some(pieces) = &self.pieces else {
             return format!("{name} is open: there are no more data than free numbers");
         };
-        let open = |piece: &Piece| piece.from_end_of_range || piece.to_end_of_range;
-        let one = |piece: &Piece| {
-            let Piece { low, high, from_end_of_range, to_end_of_range } = *piece;
+        let open = |piece: &IntervalPiece| piece.from_end_of_range || piece.to_end_of_range;
+        let one = |piece: &IntervalPiece| {
+            let IntervalPiece { low, high, from_end_of_range, to_end_of_range } = *piece;
             match (from_end_of_range, to_end_of_range) {
                 (false, false) => format!("{low:.4} to {high:.4}"),
                 (true, false) => format!("below {high:.4}"),
@@ -124,9 +118,11 @@ pub fn interval(
     found: &[Line],
     minima: impl Iterator<Item = (f64, f64)>,
     threshold: Option<f64>,
-) -> Result<Interval, FitError> {
+) -> Result<ConfidenceInterval, FitError> {
     let parameter = lines.outer.free;
-    let Some(threshold) = threshold else { return Ok(Interval { parameter, pieces: None }) };
+    let Some(threshold) = threshold else {
+        return Ok(ConfidenceInterval { parameter, pieces: None });
+    };
     let mut places = Vec::new();
     for line in found {
         places.push(Place { at: line.at, misfit: line.best().misfit, between: [line, line] });
@@ -159,14 +155,14 @@ pub fn interval(
             (Some((low, from_end_of_range)), false) => {
                 let high = before.map(|before| crossing(&before, place)).transpose()?;
                 let high = high.unwrap_or(place.at);
-                pieces.push(Piece { low, high, from_end_of_range, to_end_of_range: false });
+                pieces.push(IntervalPiece { low, high, from_end_of_range, to_end_of_range: false });
                 open = None;
             }
             _ => {}
         }
     }
     if let (Some((low, from_end_of_range)), Some(last)) = (open, places.last()) {
-        pieces.push(Piece { low, high: last.at, from_end_of_range, to_end_of_range: true });
+        pieces.push(IntervalPiece { low, high: last.at, from_end_of_range, to_end_of_range: true });
     }
     // An interval that is one minimum holds it, whatever the rounding of its coordinate.
     let value = |at: f64| {
@@ -176,7 +172,7 @@ pub fn interval(
     for piece in &mut pieces {
         (piece.low, piece.high) = (value(piece.low), value(piece.high));
     }
-    Ok(Interval { parameter, pieces: Some(pieces) })
+    Ok(ConfidenceInterval { parameter, pieces: Some(pieces) })
 }
 
 #[cfg(test)]
@@ -185,13 +181,13 @@ mod verdicts {
 
     #[test]
     fn a_verdict_says_what_is_open() {
-        let piece = |low, high, from_end_of_range, to_end_of_range| Piece {
+        let piece = |low, high, from_end_of_range, to_end_of_range| IntervalPiece {
             low,
             high,
             from_end_of_range,
             to_end_of_range,
         };
-        let verdict = |pieces| Interval { parameter: Free::Mu, pieces }.verdict();
+        let verdict = |pieces| ConfidenceInterval { parameter: Free::Mu, pieces }.verdict();
         for (pieces, expected) in [
             (None, "mu is open: there are no more data than free numbers"),
             (Some(vec![piece(0.1, 0.25, false, false)]), "mu is decided: 0.1000 to 0.2500"),

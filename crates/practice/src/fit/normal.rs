@@ -6,14 +6,13 @@ use super::FitError;
 use super::axis::Axis;
 use super::bodies::Units;
 use super::free::Free;
-use super::intervals::{Interval, interval, threshold};
+use super::intervals::{ConfidenceInterval, interval, threshold};
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
-use super::settings::Settings;
+use super::settings::FitSettings;
 
 /// The fit of the damping to ε_n.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DampingFit {
     /// Damping a at normal incidence.
     pub damping: f64,
@@ -24,11 +23,14 @@ pub struct DampingFit {
     /// Sum of the squares of the residuals over their errors.
     pub misfit: f64,
     /// The interval of the damping.
-    pub interval: Interval,
+    pub interval: ConfidenceInterval,
 }
 
 /// The damping of the settings at normal incidence: fitted, given by ε_n, or taken from the bodies.
-pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<DampingFit>), FitError> {
+pub fn damping(
+    settings: &FitSettings,
+    units: &Units,
+) -> Result<(f64, Option<DampingFit>), FitError> {
     if let Some(eps_n) = settings.eps_n {
         return Ok((restitution::damping(settings.bodies.pair.law, eps_n)?, None));
     }

@@ -3,13 +3,13 @@
 use stickslip_model::{Collider, Collision, CollisionFailure, Contact, Engine};
 
 use super::FitError;
-use super::bodies::{Bodies, Units, Values};
+use super::bodies::{FittedBodies, Units, Values};
 use super::data::{Datum, Measured};
 
 /// Some of the data, and the bodies.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    pub bodies: Bodies,
+    pub bodies: FittedBodies,
     pub units: Units,
     impacts: Vec<Impact>,
     /// Standard errors, 1 where none are given.
@@ -28,14 +28,18 @@ struct Impact {
 
 /// A collision with its impact.
 struct Collided<'a> {
-    bodies: &'a Bodies,
+    bodies: &'a FittedBodies,
     impact: &'a Impact,
     eps_n: f64,
     eps_t: f64,
 }
 
 impl Problem {
-    pub fn new<'a>(bodies: Bodies, units: Units, data: impl Iterator<Item = &'a Datum>) -> Self {
+    pub fn new<'a>(
+        bodies: FittedBodies,
+        units: Units,
+        data: impl Iterator<Item = &'a Datum>,
+    ) -> Self {
         let mut impacts: Vec<Impact> = Vec::new();
         let (mut errors, mut observed) = (Vec::new(), Vec::new());
         for datum in data {
@@ -198,7 +202,7 @@ impl Collided<'_> {
 /// # Errors
 /// The impact cannot be computed.
 pub fn predicted_at(
-    bodies: &Bodies,
+    bodies: &FittedBodies,
     units: &Units,
     values: &Values,
     quantity: Measured,

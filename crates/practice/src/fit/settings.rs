@@ -4,15 +4,15 @@ use stickslip_model::{Damping, InvalidValue, Law};
 use stickslip_plane::Range;
 
 use super::FitError;
-use super::bodies::Bodies;
+use super::bodies::FittedBodies;
 use super::data::{Datum, Measured};
 use super::free::{Free, Ranges};
 
 /// The data, and what is fitted to them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct FitSettings {
     /// The bodies and their contact law. What is not fitted has their values.
-    pub bodies: Bodies,
+    pub bodies: FittedBodies,
     /// The data, at most [`Self::MOST_DATA`].
     pub data: Vec<Datum>,
     /// What is fitted: [`Free::Damping`], or up to two others, or both.
@@ -28,15 +28,14 @@ pub struct Settings {
     pub relative_errors: bool,
 }
 
-impl Settings {
+impl FitSettings {
     /// Most data.
     pub const MOST_DATA: usize = 10_000;
     /// Largest κ.
     pub const LARGEST_KAPPA: f64 = 1e4;
 
     /// A fit of κ and μ to `data`, with intervals at 0.95.
-    #[must_use]
-    pub fn new(bodies: Bodies, data: Vec<Datum>) -> Self {
+    pub fn new(bodies: FittedBodies, data: Vec<Datum>) -> Self {
         let mut ranges = Ranges::default();
         // Beyond it contacts never end.
         ranges.damping.high = ranges.damping.high.min(0.99 * bodies.pair.law.endless_from());
@@ -65,11 +64,11 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`FitError`] names the first that is out of its range, or contradicts another.
-    pub fn validate(&self) -> Result<(), FitError> {
+    /// [`InvalidValue`] names the first that is out of its range, or contradicts another.
+    pub fn validate(&self) -> Result<(), InvalidValue> {
         let count = self.data.len();
         if !(1..=Self::MOST_DATA).contains(&count) {
-            return Err(FitError::Count { count });
+            return Err(Self::bad_count(count));
         }
         for datum in &self.data {
             valid(datum, self.bodies.are_scaled())?;
@@ -82,7 +81,13 @@ impl Settings {
         for (normal, free) in stages.into_iter().chain([(false, self.tangential().len())]) {
             let data = self.data_of(normal).count();
             if data < free {
-                return Err(FitError::TooFew { data, free, normal });
+                let of = if normal { "of eps_n" } else { "of the tangential motion" };
+                let phrase = format!("data {of} for {free} free numbers");
+                return Err(InvalidValue::phrase(
+                    data.to_string(),
+                    phrase,
+                    "at least as many data",
+                ));
             }
             if free > 0 {
                 self.valid_errors(normal)?;
@@ -91,14 +96,19 @@ impl Settings {
         Ok(())
     }
 
-    fn valid_free(&self) -> Result<(), FitError> {
+    pub(super) fn bad_count(count: usize) -> InvalidValue {
+        InvalidValue::phrase(count.to_string(), "data", format!("1 to {}", Self::MOST_DATA))
+    }
+
+    fn valid_free(&self) -> Result<(), InvalidValue> {
         for (index, free) in self.free.iter().enumerate() {
             let name = free.name();
             if self.free[..index].contains(free) {
-                return Err(FitError::Twice { name });
+                return Err(InvalidValue::phrase(name, "is free twice", "different names"));
             }
             if *free == Free::Kappa && !self.bodies.pair.law.remembers() {
-                return Err(FitError::NoSpring { name });
+                let phrase = "is free, but the law has no spring";
+                return Err(InvalidValue::phrase(name, phrase, "other free numbers"));
             }
             let Range { low, high } = self.ranges.of(*free);
             let (least, open, most) = match free {
@@ -108,22 +118,28 @@ impl Settings {
             };
             let above = if open { low > least } else { low >= least };
             if !(above && low < high && high <= most) {
-                return Err(FitError::Range { name, low, high, most, open });
+                let phrase = format!("{low:?} to {high:?} of {name} cannot be used");
+                let from = if open { "above" } else { "from" };
+                let expected = format!("two rising numbers {from} 0, at most {most:?}");
+                return Err(InvalidValue::phrase("the range", phrase, expected));
             }
         }
         if self.free.is_empty() || self.tangential().len() > 2 {
-            return Err(FitError::Free { count: self.tangential().len() });
+            let expected = "1 or 2 of kappa (or k_t), mu and tangential_damping, or damping";
+            let (count, phrase) = (self.tangential().len(), "free numbers besides the damping");
+            return Err(InvalidValue::phrase(count.to_string(), phrase, expected));
         }
         Ok(())
     }
 
-    fn valid_damping(&self) -> Result<(), FitError> {
+    fn valid_damping(&self) -> Result<(), InvalidValue> {
         let law = self.bodies.pair.law;
         let free = self.free.contains(&Free::Damping);
         let damped = law.damping != Damping::None;
         if let Some(value) = self.eps_n {
             if free {
-                return Err(FitError::DampingTwice { value });
+                let phrase = format!("= {value:?} decides the damping, which is free");
+                return Err(InvalidValue::phrase("eps_n", phrase, "one of the two"));
             }
             let without = "1, since this law has no damping";
             let expected = if damped { Measured::EpsN.expected() } else { without };
@@ -131,13 +147,13 @@ impl Settings {
             InvalidValue::check("eps_n", value, expected, accepted)?;
         }
         if free && !damped {
-            return Err(FitError::Undamped { name: Free::Damping.name() });
+            return Err(without_damping(Free::Damping));
         }
         if free && self.ranges.damping.high >= law.endless_from() {
-            return Err(FitError::Endless {
-                high: self.ranges.damping.high,
-                most: law.endless_from(),
-            });
+            let high = self.ranges.damping.high;
+            let phrase = format!("up to {high:?} has contacts that never end");
+            let expected = format!("a range below {:?}", law.endless_from());
+            return Err(InvalidValue::phrase("damping", phrase, expected));
         }
         let elastic = match self.eps_n {
             Some(value) => value == 1.0,
@@ -145,23 +161,28 @@ impl Settings {
         };
         let dashpot = Free::TangentialDamping;
         if self.free.contains(&dashpot) && (!damped || elastic) {
-            return Err(FitError::Undamped { name: dashpot.name() });
+            return Err(without_damping(dashpot));
         }
         Ok(())
     }
 
     /// All data of a stage have errors, or none has one and all are of one quantity.
-    fn valid_errors(&self, normal: bool) -> Result<(), FitError> {
+    fn valid_errors(&self, normal: bool) -> Result<(), InvalidValue> {
         let data = || self.data_of(normal).map(|(_, datum)| datum);
         let with = data().filter(|datum| datum.error.is_some()).count();
         if with == 0 {
             let mut quantities: Vec<_> = data().map(|datum| datum.quantity.name()).collect();
             quantities.dedup();
             if let Some(other) = quantities.iter().find(|name| **name != quantities[0]) {
-                return Err(FitError::Weights { first: quantities[0], second: other });
+                let phrase = format!("and {other} have no errors");
+                let expected =
+                    "errors, which weigh one quantity against the other, or one quantity";
+                return Err(InvalidValue::phrase(quantities[0], phrase, expected));
             }
         } else if let Some(datum) = data().find(|datum| datum.error.is_none()) {
-            return Err(FitError::NoError { row: datum.row, name: datum.quantity.name() });
+            let name = format!("row {}: {}", datum.row, datum.quantity.name());
+            let phrase = "has no error, and others have one";
+            return Err(InvalidValue::phrase(name, phrase, "all errors, or none"));
         }
         Ok(())
     }
@@ -174,6 +195,11 @@ impl Settings {
     pub(super) fn law(&self) -> Law {
         self.bodies.pair.law
     }
+}
+
+fn without_damping(free: Free) -> InvalidValue {
+    let phrase = "is free, but has no effect without damping";
+    InvalidValue::phrase(free.name(), phrase, "a law with damping, and eps_n below 1")
 }
 
 fn valid(datum: &Datum, scaled: bool) -> Result<(), InvalidValue> {

@@ -6,7 +6,7 @@ use stickslip_plane::progress::{Progress, Report};
 
 use super::axis::Axis;
 use super::bodies::{Units, Values};
-use super::course::Course;
+use super::course::FittedCourse;
 use super::data::{Datum, Measured};
 use super::free::Free;
 use super::intervals::{interval, threshold};
@@ -14,7 +14,7 @@ use super::local::{Bottom, different, of};
 use super::normal;
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
-use super::settings::Settings;
+use super::settings::FitSettings;
 use super::{Fit, FitError, Mindlin, Minimum, Residual, RootMeanSquare, SCHEMA};
 use crate::time_steps::undamped_contact_time;
 
@@ -22,7 +22,7 @@ use crate::time_steps::undamped_contact_time;
 /// the same impacts, as from simulated experiments, can be fitted with one survey.
 #[derive(Clone, Debug)]
 pub struct Survey {
-    settings: Settings,
+    settings: FitSettings,
     units: Units,
     /// The damping of the fit.
     fixed: Values,
@@ -38,7 +38,7 @@ impl Survey {
     ///
     /// # Errors
     /// [`FitError`]: the settings are out of range, or an impact cannot be computed.
-    pub fn new(settings: &Settings, progress: Report<'_>) -> Result<Self, FitError> {
+    pub fn new(settings: &FitSettings, progress: Report<'_>) -> Result<Self, FitError> {
         settings.validate()?;
         let speed = settings.data.iter().map(Datum::speed_m_per_s).fold(0.0, f64::max);
         let units = settings.bodies.units(speed)?;
@@ -123,9 +123,9 @@ impl Survey {
 
     /// A fit with its course over the angle.
     pub(super) fn with_course(&self, fit: Fit) -> Result<Fit, FitError> {
-        let Settings { bodies, data, .. } = &self.settings;
+        let FitSettings { bodies, data, .. } = &self.settings;
         let minima: Vec<Values> = fit.minima.iter().map(|minimum| minimum.values).collect();
-        let course = Course::new(bodies, &self.units, data, &minima)?;
+        let course = FittedCourse::new(bodies, &self.units, data, &minima)?;
         Ok(Fit { course, ..fit })
     }
 
@@ -138,7 +138,7 @@ impl Survey {
     pub fn fit_of(&self, values: &[f64]) -> Result<Fit, FitError> {
         let mut settings = self.settings.clone();
         if values.len() != settings.data.len() || self.damping.is_some() {
-            return Err(FitError::Count { count: values.len() });
+            return Err(FitSettings::bad_count(values.len()).into());
         }
         for (datum, value) in settings.data.iter_mut().zip(values) {
             datum.value = *value;

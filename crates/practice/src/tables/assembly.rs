@@ -7,12 +7,12 @@ use stickslip_tracer::Location;
 
 use super::boundaries::Boundaries;
 use super::chebyshev::{ACROSS, ALONG, coefficients, extrema, nodes, powers, rounded, value};
-use super::settings::{Settings, Window};
+use super::settings::{TableSettings, TableWindow};
 use super::slab::{Graph, Slab, Stack};
 use super::stretch::Stretch;
 use super::strip::{Demand, Gap, Refusal, Strip, restitution, within};
 use super::table::{Arrays, NO_REGION};
-use super::{Place, TableError};
+use super::{TableError, TablePlace};
 
 /// The relative error of graphs as a part of the bound: at a graze the slope of ε_t over ln y jumps
 /// by less than the inverse.
@@ -38,7 +38,7 @@ struct Filled {
 /// [`TableError`]: a collision cannot be computed, the bound is not reached, or there are too many
 /// strips.
 pub fn arrays(
-    settings: &Settings,
+    settings: &TableSettings,
     division: &Atlas,
     begin: impl Fn(usize),
     done: impl Fn() + Sync,
@@ -57,7 +57,7 @@ pub fn arrays(
         grid: places(settings.bound / 5000.0),
         graph_grid,
     };
-    let has_normals = matches!(settings.window, Window::Velocities { .. });
+    let has_normals = matches!(settings.window, TableWindow::Velocities { .. });
     let task = Task { division, demand, has_normals };
     let filled = slabs.into_par_iter().map(|slab| {
         let middle = f64::midpoint(slab.low, slab.high);
@@ -99,7 +99,7 @@ impl Task<'_> {
                 }
                 Err(Refusal::Failed(error)) => return Err(error),
                 Err(Refusal::Wide { y, error }) if slab.is_narrow() => {
-                    let place = Place::of(&self.division.plane, [slab.x(0.5), y]);
+                    let place = TablePlace::of(&self.division.plane, [slab.x(0.5), y]);
                     return Err(TableError::Coarse { place, error });
                 }
                 Err(Refusal::Wide { .. }) => {}
@@ -175,15 +175,15 @@ fn places(unit: f64) -> i32 {
 }
 
 pub(super) fn index(count: usize) -> Result<u32, TableError> {
-    let most = Settings::MOST_STRIPS;
+    let most = TableSettings::MOST_STRIPS;
     u32::try_from(count).map_err(|_| TableError::Many { most })
 }
 
 impl Arrays {
-    fn push(&mut self, filled: &Filled, settings: &Settings) -> Result<(), TableError> {
+    fn push(&mut self, filled: &Filled, settings: &TableSettings) -> Result<(), TableError> {
         let Filled { slab, normal, strips, edge } = filled;
-        if self.strip_stretches.len() + strips.len() > Settings::MOST_STRIPS {
-            return Err(TableError::Many { most: Settings::MOST_STRIPS });
+        if self.strip_stretches.len() + strips.len() > TableSettings::MOST_STRIPS {
+            return Err(TableError::Many { most: TableSettings::MOST_STRIPS });
         }
         self.walls.push(slab.low);
         self.scales.push(1.0 / (slab.high - slab.low));

@@ -6,8 +6,8 @@ use stickslip_plane::Range;
 
 use super::TableError;
 use super::chebyshev::{ACROSS, ALONG};
-use super::settings::Window;
-use super::table::{Arrays, NO_REGION, Table, Verification};
+use super::settings::TableWindow;
+use super::table::{Arrays, NO_REGION, Table, TableVerification};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.table/1";
@@ -18,18 +18,18 @@ const ASCENDING: &str = "a finite number in an ascending range";
 /// A table as its JSON has it. See [`Table`] for the fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the fields are those of a table")]
-pub struct Document {
+pub struct TableDocument {
     /// [`SCHEMA`].
     pub schema: String,
-    pub window: Window,
+    pub window: TableWindow,
     pub constant_eps_n: Option<f64>,
     pub bound: f64,
-    pub verification: Verification,
+    pub verification: TableVerification,
     pub regions: Vec<String>,
     pub arrays: Arrays,
 }
 
-impl From<&Table> for Document {
+impl From<&Table> for TableDocument {
     fn from(table: &Table) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
@@ -43,20 +43,20 @@ impl From<&Table> for Document {
     }
 }
 
-impl TryFrom<Document> for Table {
+impl TryFrom<TableDocument> for Table {
     type Error = TableError;
 
     /// The table of a document. Everything is checked that a look-up relies on; that the
     /// coefficients are right is not.
-    fn try_from(document: Document) -> Result<Self, TableError> {
-        let Document { schema, window, constant_eps_n, bound, verification, regions, arrays } =
+    fn try_from(document: TableDocument) -> Result<Self, TableError> {
+        let TableDocument { schema, window, constant_eps_n, bound, verification, regions, arrays } =
             document;
         if schema != SCHEMA {
             return Err(InvalidValue::new("schema", &*schema, format!("{SCHEMA:?}")).into());
         }
         let damping = match window {
-            Window::Scaled { damping, .. } => damping,
-            Window::Velocities { pair, .. } => pair.surface.damping_time_s,
+            TableWindow::Scaled { damping, .. } => damping,
+            TableWindow::Velocities { pair, .. } => pair.surface.damping_time_s,
         };
         let eps_n = constant_eps_n.unwrap_or(1.0);
         let sides @ [x, y] = window.sides();
@@ -72,7 +72,7 @@ impl TryFrom<Document> for Table {
         ] {
             InvalidValue::check(name, value, ASCENDING, ok && value.is_finite())?;
         }
-        let is_scaled = matches!(window, Window::Scaled { .. });
+        let is_scaled = matches!(window, TableWindow::Scaled { .. });
         if constant_eps_n.is_some() != is_scaled {
             return Err(TableError::Contradiction { name: "constant_eps_n", index: 0 });
         }

@@ -7,9 +7,9 @@ use stickslip_model::spheres::Surface;
 use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{ACROSS, ALONG};
-use super::settings::Window;
+use super::settings::TableWindow;
 use super::stretch::Stretch;
-use super::table::{NO_REGION, Table, Verification};
+use super::table::{NO_REGION, Table, TableVerification};
 
 /// The header, with names between @ for what differs.
 const TEMPLATE: &str = include_str!("header.h");
@@ -125,14 +125,16 @@ impl Table {
     /// The names of both axes.
     fn c_names(&self) -> [&'static str; 2] {
         match self.window {
-            Window::Scaled { .. } => CollisionPlane::SCALED,
-            Window::Velocities { .. } => ["g_n", "g_t"],
+            TableWindow::Scaled { .. } => CollisionPlane::SCALED,
+            TableWindow::Velocities { .. } => ["g_n", "g_t"],
         }
     }
 
     /// What the header says of ε_n, and its constants.
     fn c_normal(&self) -> (&'static str, String) {
-        if let (Window::Scaled { damping, .. }, Some(eps_n)) = (self.window, self.constant_eps_n) {
+        if let (TableWindow::Scaled { damping, .. }, Some(eps_n)) =
+            (self.window, self.constant_eps_n)
+        {
             let constants =
                 format!("#define @PREFIX@_DAMPING {damping:?}\n#define @PREFIX@_EPS_N {eps_n:?}\n");
             return ("@PREFIX@_EPS_N\n *       the coefficient of normal restitution", constants);
@@ -144,7 +146,7 @@ impl Table {
 
     /// What the arguments of the functions are.
     fn c_explanation(&self) -> String {
-        let Window::Velocities { pair, .. } = self.window else { return SCALED.to_owned() };
+        let TableWindow::Velocities { pair, .. } = self.window else { return SCALED.to_owned() };
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = pair.surface;
         let mut text = VELOCITIES.to_owned();
         for (name, value) in [
@@ -163,10 +165,12 @@ impl Table {
     fn summary(&self) -> String {
         let ([x, y], [x_name, y_name]) = (self.sides, self.c_names());
         let rest = match self.window {
-            Window::Scaled { damping, .. } => format!(" at the scaled damping\n * {damping:?}"),
-            Window::Velocities { .. } => " in m/s".to_owned(),
+            TableWindow::Scaled { damping, .. } => {
+                format!(" at the scaled damping\n * {damping:?}")
+            }
+            TableWindow::Velocities { .. } => " in m/s".to_owned(),
         };
-        let Verification { points, largest_error, .. } = self.verification;
+        let TableVerification { points, largest_error, .. } = self.verification;
         format!(
             "The restitution of two frictional spheres (Schwager, Becker and Poeschel, Eur. Phys. J. \
              E\n * 27, 107, 2008) for {x_name} from {:?} to {:?} and {y_name} from {:?} to {:?}{rest}. \

@@ -9,9 +9,9 @@ use super::TableError;
 
 /// The window of a table and its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct TableSettings {
     /// The window.
-    pub window: Window,
+    pub window: TableWindow,
     /// The bound of the errors, from [`Self::FINEST`] to [`Self::COARSEST`].
     pub bound: f64,
     /// Whether the table has the regions of the atlas.
@@ -20,10 +20,9 @@ pub struct Settings {
 
 /// The window of a table: intervals of its two axes, which are above 0, and what all its collisions
 /// have in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
-pub enum Window {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum TableWindow {
     /// κ and ψ at one damping.
     Scaled {
         /// Scaled stiffness κ.
@@ -44,9 +43,8 @@ pub enum Window {
     },
 }
 
-impl Window {
+impl TableWindow {
     /// The names of both axes.
-    #[must_use]
     pub fn names(&self) -> [&'static str; 2] {
         match self {
             Self::Scaled { .. } => CollisionPlane::SCALED,
@@ -55,7 +53,6 @@ impl Window {
     }
 
     /// The intervals of both axes.
-    #[must_use]
     pub fn sides(&self) -> [Range; 2] {
         match *self {
             Self::Scaled { kappa, psi, .. } => [kappa, psi],
@@ -77,17 +74,17 @@ impl Window {
     }
 }
 
-impl Default for Settings {
+impl Default for TableSettings {
     /// κ from 0.5 to 100 and ψ from 0.01 to 3 without damping, to 1e-8, without regions.
     fn default() -> Self {
         let kappa = Range { low: 0.5, high: 100.0 };
         let psi = Range { low: 0.01, high: 3.0 };
-        let window = Window::Scaled { kappa, psi, damping: 0.0 };
+        let window = TableWindow::Scaled { kappa, psi, damping: 0.0 };
         Self { window, bound: 1e-8, regions: false }
     }
 }
 
-impl Settings {
+impl TableSettings {
     /// The finest bound.
     pub const FINEST: f64 = 1e-12;
     /// The coarsest bound.
@@ -112,7 +109,7 @@ impl Settings {
             InvalidValue::check(name, [low, high], expected, accepted)?;
         }
         match self.window {
-            Window::Velocities { pair, .. }
+            TableWindow::Velocities { pair, .. }
                 if pair.law != Law::PAPER || pair.tangential_damping_ratio != 0.0 =>
             {
                 Err(TableError::Law)

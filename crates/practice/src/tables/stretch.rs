@@ -5,9 +5,8 @@
 /// Behind a graze ε_t is a power series in the square root of the distance from the boundary, and
 /// so is a boundary beside the place where it turns back. In the root as a coordinate both are
 /// smooth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Stretch {
     /// The coordinate itself.
     None,

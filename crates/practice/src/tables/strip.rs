@@ -9,7 +9,7 @@ use super::chebyshev::{
 };
 use super::slab::{Graph, Slab};
 use super::stretch::Stretch;
-use super::{Place, TableError};
+use super::{TableError, TablePlace};
 
 /// What strips must hold to.
 #[derive(Clone, Copy)]
@@ -260,6 +260,7 @@ pub fn restitution(
 ) -> Result<[f64; 2], TableError> {
     let contact = plane.contact_at(place)?;
     let computed = Engine::Exact.collide_into(contact, collision);
-    computed.map_err(|source| TableError::Engine { place: Place::of(plane, place), source })?;
+    computed
+        .map_err(|source| TableError::Engine { place: TablePlace::of(plane, place), source })?;
     Ok([collision.eps_t(), collision.eps_n])
 }

@@ -3,8 +3,8 @@
 use stickslip_plane::Range;
 
 use super::chebyshev::{double_value, value};
-use super::keys::Keys;
-use super::settings::Window;
+use super::hints::Keys;
+use super::settings::TableWindow;
 use super::stretch::Stretch;
 
 /// No region.
@@ -21,13 +21,13 @@ pub const NO_REGION: u32 = u32::MAX;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// The window.
-    pub window: Window,
+    pub window: TableWindow,
     /// ε_n of a table over (κ, ψ), which is one number at one damping.
     pub constant_eps_n: Option<f64>,
     /// The bound of the errors of ε_t and ε_n.
     pub bound: f64,
     /// What the verification found.
-    pub verification: Verification,
+    pub verification: TableVerification,
     /// The itineraries of the atlas' regions, by their numbers; empty unless the settings include
     /// regions.
     pub regions: Vec<String>,
@@ -41,10 +41,9 @@ pub struct Table {
 ///
 /// The table was made from other points. These are random in each strip, and on both sides of each
 /// boundary, at distances in y from 1e-15 to 0.1 of its strip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Verification {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TableVerification {
     /// The number of points.
     pub points: u64,
     /// The largest error of ε_t.
@@ -57,16 +56,15 @@ pub struct Verification {
     pub largest_error_of_eps_n: f64,
 }
 
-impl Verification {
+impl TableVerification {
     /// No comparison.
     pub(super) const NONE: Self =
         Self { points: 0, largest_error: 0.0, x: 0.0, y: 0.0, largest_error_of_eps_n: 0.0 };
 }
 
 /// The arrays of a [`Table`], as its files have them.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Arrays {
     /// How slabs are found.
     pub slab_keys: Keys,
@@ -104,7 +102,7 @@ pub struct Arrays {
 
 /// Where a point is in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
+struct TablePlace {
     strip: usize,
     /// The stretched coordinates in the strip.
     along: f64,
@@ -113,13 +111,11 @@ struct Place {
 
 impl Table {
     /// ε_t at x and y; not a number outside the table, or if x or y is not a number.
-    #[must_use]
     pub fn eps_t(&self, x: f64, y: f64) -> f64 {
         self.place(x, y).map_or(f64::NAN, |place| self.arrays.value(place))
     }
 
     /// ε_n at x; not a number outside the table, or if x is not a number.
-    #[must_use]
     pub fn eps_n(&self, x: f64) -> f64 {
         match self.constant_eps_n {
             _ if !is_inside(x, self.sides[0]) => f64::NAN,
@@ -130,7 +126,6 @@ impl Table {
 
     /// The number of the region at x and y, an index of [`Self::regions`]. `None` outside the
     /// table, in a strip too thin to have a region, or if the settings do not include regions.
-    #[must_use]
     pub fn region(&self, x: f64, y: f64) -> Option<usize> {
         let strip = self.place(x, y)?.strip;
         let region = *self.arrays.regions.get(strip)?;
@@ -138,13 +133,11 @@ impl Table {
     }
 
     /// The arrays that are looked up.
-    #[must_use]
     pub fn arrays(&self) -> &Arrays {
         &self.arrays
     }
 
     /// The number of slabs and of strips.
-    #[must_use]
     pub fn pieces(&self) -> [usize; 2] {
         let slabs = self.arrays.scales.len();
         // Each slab has an edge.
@@ -152,13 +145,12 @@ impl Table {
     }
 
     /// The size of the arrays in bytes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         self.arrays.bytes()
     }
 
     #[inline(always)]
-    fn place(&self, x: f64, y: f64) -> Option<Place> {
+    fn place(&self, x: f64, y: f64) -> Option<TablePlace> {
         let inside = is_inside(x, self.sides[0]) && is_inside(y, self.sides[1]);
         inside.then(|| self.arrays.place(x, y))
     }
@@ -192,7 +184,7 @@ impl Arrays {
 
     /// The place of a point of the window.
     #[inline(always)]
-    fn place(&self, x: f64, y: f64) -> Place {
+    fn place(&self, x: f64, y: f64) -> TablePlace {
         let (slab, along) = self.slab(x);
         let [first, end] = [slab, slab + 1].map(|slab| self.first_strips[slab] as usize);
         let row = slab * self.strip_keys.count;
@@ -207,7 +199,7 @@ impl Arrays {
         let part = (y - low) / (high - low);
         // Also where a strip has no width and the quotient is not a number.
         let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
-        Place { strip, along, across: self.strip_stretches[strip].of(part) }
+        TablePlace { strip, along, across: self.strip_stretches[strip].of(part) }
     }
 
     /// y on the lower side of a strip.
@@ -219,7 +211,7 @@ impl Arrays {
 
     /// The value at a place.
     #[inline(always)]
-    fn value(&self, Place { strip, along, across }: Place) -> f64 {
+    fn value(&self, TablePlace { strip, along, across }: TablePlace) -> f64 {
         let [first, end] = [strip, strip + 1].map(|strip| self.first_rows[strip] as usize);
         let (rows, _) = self.rows.as_chunks();
         double_value(&rows[first..end], along, across)

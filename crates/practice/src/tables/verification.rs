@@ -7,7 +7,7 @@ use stickslip_plane::CollisionPlane;
 use super::TableError;
 use super::chebyshev::value;
 use super::strip::{restitution, within};
-use super::table::{Arrays, Table, Verification};
+use super::table::{Arrays, Table, TableVerification};
 
 /// Points at random in each strip.
 const RANDOM: usize = 48;
@@ -18,25 +18,29 @@ const BESIDE: u32 = 16;
 ///
 /// # Errors
 /// [`TableError::Engine`]: a collision cannot be computed.
-pub fn verify(table: &Table, plane: &CollisionPlane) -> Result<Verification, TableError> {
+pub fn verify(table: &Table, plane: &CollisionPlane) -> Result<TableVerification, TableError> {
     let slabs = 0..table.arrays().scales.len();
     let found = slabs.into_par_iter().map(|slab| in_slab(table, plane, slab));
-    let found: Vec<Result<Verification, TableError>> = found.collect();
-    found.into_iter().try_fold(Verification::NONE, |all, next| {
+    let found: Vec<Result<TableVerification, TableError>> = found.collect();
+    found.into_iter().try_fold(TableVerification::NONE, |all, next| {
         let next = next?;
         let worse = !within(next.largest_error, all.largest_error);
         let points = all.points + next.points;
         let largest_error_of_eps_n =
             larger(all.largest_error_of_eps_n, next.largest_error_of_eps_n);
-        Ok(Verification { points, largest_error_of_eps_n, ..if worse { next } else { all } })
+        Ok(TableVerification { points, largest_error_of_eps_n, ..if worse { next } else { all } })
     })
 }
 
-fn in_slab(table: &Table, plane: &CollisionPlane, slab: usize) -> Result<Verification, TableError> {
+fn in_slab(
+    table: &Table,
+    plane: &CollisionPlane,
+    slab: usize,
+) -> Result<TableVerification, TableError> {
     let arrays = table.arrays();
     let mut random = fastrand::Rng::with_seed(slab as u64);
     let mut collision = Collision::before(Contact::new(1.0, 1.0, 0.0)?);
-    let mut found = Verification::NONE;
+    let mut found = TableVerification::NONE;
     let mut compare = |[x, y]: [f64; 2]| {
         let x = x.clamp(table.sides[0].low, table.sides[0].high);
         let y = y.clamp(table.sides[1].low, table.sides[1].high);

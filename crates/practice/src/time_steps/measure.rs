@@ -5,12 +5,12 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 use stickslip_model::{Collision, Contact};
 
-use super::settings::Settings;
+use super::settings::TimeStepSettings;
 use super::stepped::{Stepped, step, undamped_contact_time};
 
 /// A result whose error is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum SteppedQuantity {
     /// ε_t.
     TangentialRestitution,
     /// ε_n.
@@ -19,12 +19,11 @@ pub enum Quantity {
     Energy,
 }
 
-impl Quantity {
+impl SteppedQuantity {
     /// All quantities, in the order in which they are shown.
     pub const ALL: [Self; 3] = [Self::TangentialRestitution, Self::NormalRestitution, Self::Energy];
 
     /// The name in files: `eps_t`, `eps_n` or `energy`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::TangentialRestitution => "eps_t",
@@ -35,19 +34,18 @@ impl Quantity {
 }
 
 /// The errors at one time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Row {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct TimeStepRow {
     /// The step, as the number t_c/dt of steps in the undamped contact time.
     pub steps_per_contact: f64,
     /// Whether the errors belong to a computation that resolves the contact.
     pub status: Status,
     /// Errors of ε_t; no quantity has errors if the status is [`Status::Unfinished`].
-    pub eps_t: Option<Errors>,
+    pub eps_t: Option<TimeStepErrors>,
     /// Errors of ε_n.
-    pub eps_n: Option<Errors>,
+    pub eps_n: Option<TimeStepErrors>,
     /// Errors of the energy after the contact, as parts of the energy before.
-    pub energy: Option<Errors>,
+    pub energy: Option<TimeStepErrors>,
     /// The largest [`Stepped::stiffness`] of all contacts that have ended.
     pub stiffness: f64,
     /// Number of contacts, of impacts times phases, in which a spring is not resolved.
@@ -57,9 +55,8 @@ pub struct Row {
 }
 
 /// What the errors at one time step are worth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Status {
     /// All contacts have ended, and the steps resolve their springs.
     Ok,
@@ -72,7 +69,6 @@ pub enum Status {
 
 impl Status {
     /// The name of the status in files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -83,9 +79,8 @@ impl Status {
 }
 
 /// Absolute errors of one quantity over impacts and start phases.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Errors {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct TimeStepErrors {
     /// The median; of an even number, the mean of the two in the middle.
     pub median: f64,
     /// The root mean square of the errors themselves, not of their scatter around a mean.
@@ -95,8 +90,7 @@ pub struct Errors {
 }
 
 /// The largest error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Worst {
     /// The error.
     pub error: f64,
@@ -106,21 +100,20 @@ pub struct Worst {
     pub phase: f64,
 }
 
-impl Row {
+impl TimeStepRow {
     /// The errors of `quantity`.
-    #[must_use]
-    pub fn errors(&self, quantity: Quantity) -> Option<Errors> {
+    pub fn errors(&self, quantity: SteppedQuantity) -> Option<TimeStepErrors> {
         match quantity {
-            Quantity::TangentialRestitution => self.eps_t,
-            Quantity::NormalRestitution => self.eps_n,
-            Quantity::Energy => self.energy,
+            SteppedQuantity::TangentialRestitution => self.eps_t,
+            SteppedQuantity::NormalRestitution => self.eps_n,
+            SteppedQuantity::Energy => self.energy,
         }
     }
 
     /// Measures the errors against `exact`, on the threads of the current pool. `done` is called
     /// once for each impact.
     pub(super) fn measure(
-        settings: &Settings,
+        settings: &TimeStepSettings,
         steps_per_contact: f64,
         exact: &[Collision],
         done: impl Fn() + Sync,
@@ -147,9 +140,9 @@ impl Row {
                 (0, _) => Status::Unstable,
                 _ => Status::Unfinished,
             },
-            eps_t: errors(Quantity::TangentialRestitution),
-            eps_n: errors(Quantity::NormalRestitution),
-            energy: errors(Quantity::Energy),
+            eps_t: errors(SteppedQuantity::TangentialRestitution),
+            eps_n: errors(SteppedQuantity::NormalRestitution),
+            energy: errors(SteppedQuantity::Energy),
             stiffness: ended().map(|stepped| stepped.stiffness).fold(0.0, f64::max),
             unstable,
             unfinished,
@@ -158,12 +151,12 @@ impl Row {
 }
 
 /// The start phase with an index, a part of a step.
-fn phase(settings: &Settings, index: usize) -> f64 {
+fn phase(settings: &TimeStepSettings, index: usize) -> f64 {
     (index as f64 + 0.5) / settings.phases as f64
 }
 
 /// The collision in steps, for every start phase.
-fn stepped(settings: &Settings, steps: f64, exact: &Collision) -> Vec<Option<Stepped>> {
+fn stepped(settings: &TimeStepSettings, steps: f64, exact: &Collision) -> Vec<Option<Stepped>> {
     let dt = undamped_contact_time(exact.contact.law()) / steps;
     let phases = (0..settings.phases).map(|index| phase(settings, index));
     phases
@@ -173,11 +166,11 @@ fn stepped(settings: &Settings, steps: f64, exact: &Collision) -> Vec<Option<Ste
 
 /// The errors of `quantity`, if there are any numbers.
 fn errors(
-    settings: &Settings,
-    quantity: Quantity,
+    settings: &TimeStepSettings,
+    quantity: SteppedQuantity,
     exact: &[Collision],
     contacts: &[Vec<Option<Stepped>>],
-) -> Option<Errors> {
+) -> Option<TimeStepErrors> {
     let mut errors = Vec::new();
     let mut worst: Option<Worst> = None;
     for (contact, (collision, phases)) in exact.iter().zip(contacts).enumerate() {
@@ -194,7 +187,7 @@ fn errors(
     }
     let squares: f64 = errors.iter().map(|error| error * error).sum();
     let root_mean_square = (squares / errors.len() as f64).sqrt();
-    Some(Errors { median: median(errors)?, root_mean_square, worst: worst? })
+    Some(TimeStepErrors { median: median(errors)?, root_mean_square, worst: worst? })
 }
 
 fn exact_result(collision: &Collision) -> (f64, f64) {
@@ -202,15 +195,15 @@ fn exact_result(collision: &Collision) -> (f64, f64) {
 }
 
 fn value(
-    settings: &Settings,
-    quantity: Quantity,
+    settings: &TimeStepSettings,
+    quantity: SteppedQuantity,
     contact: Contact,
     (eps_n, eps_t): (f64, f64),
 ) -> f64 {
     match quantity {
-        Quantity::TangentialRestitution => eps_t,
-        Quantity::NormalRestitution => eps_n,
-        Quantity::Energy => {
+        SteppedQuantity::TangentialRestitution => eps_t,
+        SteppedQuantity::NormalRestitution => eps_n,
+        SteppedQuantity::Energy => {
             let ratio = settings.reduction.ratio(contact.psi());
             // Tangential over normal energy before the contact.
             let share = settings.reduction.alpha * ratio * ratio;

@@ -5,8 +5,7 @@ use stickslip_model::spheres::{Encounter, Sphere};
 use super::stepped::undamped_contact_time;
 
 /// The times of an impact in SI units to which steps are compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Seconds {
     /// The undamped contact time t_c in s.
     pub contact_time_s: f64,
@@ -16,7 +15,6 @@ pub struct Seconds {
 
 impl Seconds {
     /// The times of `encounter`.
-    #[must_use]
     pub fn new(encounter: &Encounter) -> Self {
         let law = encounter.contact().law();
         Self {
@@ -26,7 +24,6 @@ impl Seconds {
     }
 
     /// The step in s for `steps_per_contact` steps in the undamped contact time.
-    #[must_use]
     pub fn step_s(&self, steps_per_contact: f64) -> f64 {
         self.contact_time_s / steps_per_contact
     }
@@ -50,7 +47,6 @@ impl Seconds {
 /// // A sphere of 4 cm, and waves of 2.97 km/s.
 /// assert!((time - 21.2e-6).abs() < 0.1e-6);
 /// ```
-#[must_use]
 pub fn rayleigh_time_s(sphere: &Sphere) -> f64 {
     let ratio = sphere.elasticity.poisson_ratio;
     let density = sphere.mass_kg / Sphere::homogeneous_mass(sphere.radius_m, 1.0);

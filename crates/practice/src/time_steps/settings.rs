@@ -3,11 +3,11 @@
 use stickslip_model::spheres::quantity;
 use stickslip_model::{Contact, GivenValue, InvalidValue, Reduction};
 
-use super::scheme::Scheme;
+use super::stepped::Scheme;
 
 /// The impacts and time steps whose errors are measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct TimeStepSettings {
     /// The impacts: at most [`Self::MOST_CONTACTS`], each counted once for every start phase.
     pub contacts: Vec<Contact>,
     /// The steps, as numbers t_c/dt of steps in the undamped contact time, from
@@ -23,7 +23,7 @@ pub struct Settings {
     pub reduction: Reduction,
 }
 
-impl Default for Settings {
+impl Default for TimeStepSettings {
     /// No impacts, and 10 to 1000 steps a contact.
     fn default() -> Self {
         Self {
@@ -36,7 +36,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl TimeStepSettings {
     /// Fewest steps in a contact.
     pub const FEWEST_STEPS: f64 = 1.0;
     /// Most steps in a contact.

@@ -4,11 +4,8 @@ use stickslip_model::{
     Contact, CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential, exact,
 };
 
-use super::scheme::Scheme;
-
 /// The duration of a contact with the normal force of `law` and without damping, in scaled units:
 /// π for a linear force, 3.218… for Hertz'.
-#[must_use]
 pub fn undamped_contact_time(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => std::f64::consts::PI,
@@ -17,8 +14,7 @@ pub fn undamped_contact_time(law: Law) -> f64 {
 }
 
 /// A collision as a particle code computes it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Stepped {
     /// Coefficient of normal restitution ε_n.
     pub eps_n: f64,
@@ -34,7 +30,6 @@ pub struct Stepped {
 
 impl Stepped {
     /// Whether the steps resolve both springs: [`Self::stiffness`] stays below 1.
-    #[must_use]
     pub fn is_stable(&self) -> bool {
         self.stiffness < 1.0
     }
@@ -57,7 +52,6 @@ const LONGEST: f64 = 10.0;
 /// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the
 /// contact has not ended after ten times `duration` (its duration without steps) or after 10⁹
 /// steps, or if numbers are no longer finite.
-#[must_use]
 pub fn step(
     contact: &Contact,
     dt: f64,
@@ -211,5 +205,54 @@ impl ForceRule {
             HistoryOf::Force | HistoryOf::None => force - viscous,
         };
         force
+    }
+}
+
+/// A scheme of a particle code.
+///
+/// Both advance velocity v and overlap x by leaps, v_{n+½} = v_{n−½} + dt f_n and
+/// x_{n+1} = x_n + dt v_{n+½}. The force f_n is that at the overlap x_n and the velocity v_{n−½}.
+/// Velocity Verlet whose forces see the velocities of half steps (LAMMPS, MercuryDPM), leapfrog
+/// (YADE) and semi-implicit Euler (MFiX) are this same sequence. In each step, in this order: the
+/// history is rescaled, if the law says so; it advances by v_{n−½}; the tangential force follows
+/// from it; and where that exceeds Coulomb's limit, it is cut off and the history is reset to it.
+///
+/// Sources: LAMMPS 29 Sep 2021 `pair_gran_hooke_history.cpp`, `pair_gran_hertz_history.cpp`,
+/// `pair_granular.cpp` (all `compute`), `fix_nve_sphere.cpp`; MercuryDPM (kuwt/MercuryDPM_fork)
+/// `BaseParticle.cc`, `SlidingFrictionInteraction.cc`; MFiX 21.3.2 `calc_force_dem.f`,
+/// `cfnewvalues.f` with `INTG_EULER`; YADE 2021.01a `NewtonIntegrator.cpp` for the motion alone.
+/// Only LAMMPS was run and compared. Schemes of other kinds, such as MFiX' Adams–Bashforth, are not
+/// computed.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Scheme {
+    /// The history advances by a whole step in the first step of a contact too, as in LAMMPS,
+    /// MercuryDPM and MFiX 21.3.2. Bodies touch where the overlap at the end of a step is above 0,
+    /// and the history is forgotten where it is not.
+    #[default]
+    Lammps,
+    /// In the first step of a contact the history advances by the time since the contact began,
+    /// x/v, but by a whole step at most, as in an older MFiX (truongd8593/mfix, commit 01e0f96,
+    /// `calc_force_dem.f`, `DTSOLID_TMP`). What else is special there was not compared.
+    Elapsed,
+}
+
+impl Scheme {
+    /// All schemes.
+    pub const ALL: [Self; 2] = [Self::Lammps, Self::Elapsed];
+
+    /// The name of the scheme: `lammps` or `elapsed`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lammps => "lammps",
+            Self::Elapsed => "elapsed",
+        }
+    }
+
+    /// The scheme with this [`Self::name`].
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }
 }

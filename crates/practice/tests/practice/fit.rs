@@ -4,7 +4,7 @@ use stickslip_model::Law;
 use stickslip_model::spheres::BodyPair;
 use stickslip_plane::{Range, progress::SILENT};
 use stickslip_practice::fit::{
-    self, Bodies, Datum, Fit, Free, Measured, Minimum, Settings, Survey, Values,
+    self, Datum, Fit, FitSettings, FittedBodies, Free, Measured, Minimum, Survey, Values,
 };
 
 use crate::oblique;
@@ -28,7 +28,7 @@ fn near(found: &Fit, kappa: f64, mu: f64) -> Option<&Minimum> {
 #[test]
 fn all_minima_of_the_aluminium_oxide_sphere() {
     let (bodies, data) = oblique::aluminium_oxide(Law::PAPER);
-    let settings = Settings::new(bodies, data);
+    let settings = FitSettings::new(bodies, data);
     let found = fit::run(&settings, SILENT).unwrap();
     let best = &found.minima[0];
     assert!((best.values.kappa - 2.8666).abs() < 1e-3, "{best:?}");
@@ -66,7 +66,7 @@ fn all_minima_of_the_aluminium_oxide_sphere() {
 #[test]
 fn a_finer_grid_has_no_other_minima() {
     let (bodies, data) = oblique::aluminium_oxide(Law::PAPER);
-    let mut settings = Settings::new(bodies, data);
+    let mut settings = FitSettings::new(bodies, data);
     settings.ranges.kappa = Range { low: 0.2, high: 80.0 };
     settings.ranges.mu = Range { low: 0.05, high: 0.3 };
     let survey = Survey::new(&settings, SILENT).unwrap();
@@ -112,7 +112,7 @@ fn spins_and_velocities_together() {
         datum.error = Some(error);
     }
     let found =
-        fit::run(&Settings { relative_errors: true, ..Settings::new(bodies, data) }, SILENT);
+        fit::run(&FitSettings { relative_errors: true, ..FitSettings::new(bodies, data) }, SILENT);
     let found = found.unwrap();
     let best = &found.minima[0];
     let [e_t, spin] = &best.root_mean_squares[..] else { panic!("{best:?}") };
@@ -121,14 +121,14 @@ fn spins_and_velocities_together() {
     assert!(spin.value < 60.0, "{best:?}");
 }
 
-fn known() -> (Bodies, Values) {
+fn known() -> (FittedBodies, Values) {
     let values = Values { kappa: 6.0, mu: 0.2, tangential_damping: 0.0, damping: 0.0 };
-    (Bodies::scaled(Law::PAPER, 2.0 / 7.0, &values).unwrap(), values)
+    (FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &values).unwrap(), values)
 }
 
 const ANGLES: [f64; 7] = [4.0, 10.0, 18.0, 27.0, 36.0, 50.0, 65.0];
 
-fn exact(bodies: &Bodies, quantity: Measured, error: Option<f64>) -> Vec<Datum> {
+fn exact(bodies: &FittedBodies, quantity: Measured, error: Option<f64>) -> Vec<Datum> {
     let angles = ANGLES.map(f64::to_radians);
     let values = fit::predicted(bodies, 1.0, quantity, &angles).unwrap();
     let datum = |(angle, value): (&f64, f64)| Datum::at_angle(*angle, 1.0, quantity, value, error);
@@ -140,7 +140,7 @@ fn exact(bodies: &Bodies, quantity: Measured, error: Option<f64>) -> Vec<Datum> 
 fn exact_data_give_back_their_numbers() {
     let (bodies, values) = known();
     for quantity in [Measured::EpsT, Measured::CentreRestitution, Measured::ReboundAngle] {
-        let mut settings = Settings::new(bodies, exact(&bodies, quantity, None));
+        let mut settings = FitSettings::new(bodies, exact(&bodies, quantity, None));
         settings.ranges.kappa.high = 40.0;
         let found = Survey::new(&settings, SILENT).unwrap().fit().unwrap();
         let best = &found.minima[0];
@@ -157,7 +157,7 @@ fn one_free_number() {
     let (bodies, values) = known();
     for (free, truth) in [(Free::Kappa, values.kappa), (Free::Mu, values.mu)] {
         let data = exact(&bodies, Measured::EpsT, Some(0.01));
-        let mut settings = Settings { free: vec![free], ..Settings::new(bodies, data) };
+        let mut settings = FitSettings { free: vec![free], ..FitSettings::new(bodies, data) };
         settings.ranges.kappa.high = 40.0;
         let found = Survey::new(&settings, SILENT).unwrap().fit().unwrap();
         let best = &found.minima[0].values;
@@ -173,13 +173,13 @@ fn one_free_number() {
 #[test]
 fn damping_from_normal_restitution() {
     let truth = Values { kappa: 6.0, mu: 0.2, tangential_damping: 0.0, damping: 0.15 };
-    let bodies = Bodies::scaled(Law::PAPER, 2.0 / 7.0, &truth).unwrap();
+    let bodies = FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &truth).unwrap();
     let mut data = exact(&bodies, Measured::EpsN, Some(0.01));
     data.extend(exact(&bodies, Measured::EpsT, Some(0.01)));
     let start = Values { kappa: 1.0, mu: 0.5, damping: 0.0, ..truth };
-    let unknown = Bodies::scaled(Law::PAPER, 2.0 / 7.0, &start).unwrap();
+    let unknown = FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &start).unwrap();
     let free = vec![Free::Damping, Free::Kappa, Free::Mu];
-    let mut settings = Settings { free, ..Settings::new(unknown, data.clone()) };
+    let mut settings = FitSettings { free, ..FitSettings::new(unknown, data.clone()) };
     settings.ranges.kappa.high = 30.0;
     let found = Survey::new(&settings, SILENT).unwrap().fit().unwrap();
     let best = &found.minima[0].values;
@@ -187,11 +187,11 @@ fn damping_from_normal_restitution() {
     let damping = found.damping.as_ref().unwrap();
     assert_eq!((damping.data, damping.interval.holds(0.15)), (7, Some(true)));
     // The same damping from ε_n at normal incidence.
-    let given = Settings {
+    let given = FitSettings {
         free: vec![Free::Kappa, Free::Mu],
         eps_n: Some(found.eps_n),
         ranges: settings.ranges,
-        ..Settings::new(unknown, data)
+        ..FitSettings::new(unknown, data)
     };
     let again = Survey::new(&given, SILENT).unwrap().fit().unwrap();
     assert!((again.minima[0].values.damping - best.damping).abs() < 1e-9);
@@ -209,7 +209,7 @@ fn predictions_are_those_of_encounters() {
         Surface { friction: 0.15, tangential_stiffness_kg_per_s2: 4e6, damping_time_s: 4e-7 };
     let wall = Wall { elasticity: Some(glass.elasticity()) };
     let pair = BodyPair::new(&sphere, &Body::Wall(wall), &surface).unwrap();
-    let bodies = Bodies::of_sphere(&sphere, pair);
+    let bodies = FittedBodies::of_sphere(&sphere, pair);
     let zero = Vector3::zeros();
     let still = WallMotion { point_m: zero, normal: Vector3::z(), velocity_m_per_s: zero };
     for angle in [0.1_f64, 0.5, 1.2] {
@@ -241,7 +241,7 @@ fn predictions_are_those_of_encounters() {
 #[test]
 fn the_same_on_any_number_of_threads() {
     let (bodies, data) = oblique::benchmark(Law::PAPER);
-    let mut settings = Settings::new(bodies, data);
+    let mut settings = FitSettings::new(bodies, data);
     settings.ranges.kappa.high = 12.0;
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

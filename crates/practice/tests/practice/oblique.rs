@@ -5,7 +5,7 @@ use stickslip_model::spheres::{
     Body, BodyPair, Constants, Elasticity, Forces, Material, Sphere, Wall,
 };
 use stickslip_model::{Law, presets};
-use stickslip_practice::fit::{Bodies, Datum, Measured, Values};
+use stickslip_practice::fit::{Datum, FittedBodies, Measured, Values};
 
 /// The data of one experiment in the file.
 fn experiment(name: &str) -> Value {
@@ -28,7 +28,7 @@ fn data(experiment: &Value, speed: f64, quantity: Measured, name: &str) -> Vec<D
 }
 
 /// The aluminium-oxide sphere on glass under a law, and e_t of its centre.
-pub fn aluminium_oxide(law: Law) -> (Bodies, Vec<Datum>) {
+pub fn aluminium_oxide(law: Law) -> (FittedBodies, Vec<Datum>) {
     let found = experiment("kharaz_2001");
     let number = |value: &Value| value.as_f64().unwrap();
     let elasticity = |body: &Value| Elasticity {
@@ -41,7 +41,7 @@ pub fn aluminium_oxide(law: Law) -> (Bodies, Vec<Datum>) {
     let sphere = Sphere::homogeneous(0.5 * number(&found["diameter_m"]), &material);
     let wall = Body::Wall(Wall { elasticity: Some(elasticity(&found["plate"])) });
     let forces = Forces::new(law, &constants(law)).unwrap();
-    let bodies = Bodies::of_sphere(&sphere, BodyPair::new(&sphere, &wall, forces).unwrap());
+    let bodies = FittedBodies::of_sphere(&sphere, BodyPair::new(&sphere, &wall, forces).unwrap());
     let speed = number(&found["speed_m_s"]);
     (bodies, data(&found, speed, Measured::CentreRestitution, "e_t_of_the_centre"))
 }
@@ -54,10 +54,10 @@ pub fn spins() -> Vec<Datum> {
 }
 
 /// Spheres without size under a law, and e_t of their centre.
-pub fn benchmark(law: Law) -> (Bodies, Vec<Datum>) {
+pub fn benchmark(law: Law) -> (FittedBodies, Vec<Datum>) {
     let found = experiment("chung_ooi_test_4");
     let values = Values { kappa: 1.0, mu: 0.1, tangential_damping: 0.0, damping: 0.0 };
-    let bodies = Bodies::scaled(law, 2.0 / 7.0, &values).unwrap();
+    let bodies = FittedBodies::scaled(law, 2.0 / 7.0, &values).unwrap();
     (bodies, data(&found, 1.0, Measured::CentreRestitution, "e_t_of_the_centre"))
 }
 

@@ -6,7 +6,7 @@ use std::fs;
 use serde_json::Value;
 use stickslip_model::Engine;
 use stickslip_plane::progress;
-use stickslip_practice::time_steps::{self, Errors, Settings};
+use stickslip_practice::time_steps::{self, TimeStepErrors, TimeStepSettings};
 
 use crate::lammps::contact;
 
@@ -19,11 +19,11 @@ fn cases() -> Vec<Value> {
 }
 
 /// The errors of ε_t of a case at `steps` steps a contact.
-fn errors(case: &Value, steps: f64) -> Errors {
-    let settings = Settings {
+fn errors(case: &Value, steps: f64) -> TimeStepErrors {
+    let settings = TimeStepSettings {
         contacts: vec![contact(case)],
         steps_per_contact: vec![steps],
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
     let result = time_steps::run(&settings, progress::SILENT).expect("errors");
     result.rows[0].eps_t.expect("errors of eps_t")

@@ -2,7 +2,9 @@
 
 use stickslip_model::Contact;
 use stickslip_plane::progress;
-use stickslip_practice::time_steps::{self, Quantity, Scheme, Settings, Status, step};
+use stickslip_practice::time_steps::{
+    self, Scheme, Status, SteppedQuantity, TimeStepSettings, step,
+};
 
 use crate::time_steps::{contact, run, stepped};
 
@@ -18,7 +20,7 @@ fn a_spring_that_is_not_resolved_is_unstable() {
     assert!(result.rows.iter().all(|row| (row.stiffness < 1.0) == (row.status == ok)));
     assert_eq!(result.rows[0].unstable, 16);
     // However large an error is wanted, the step has to resolve the spring.
-    let largest = result.largest_step(Quantity::TangentialRestitution, 2.0);
+    let largest = result.largest_step(SteppedQuantity::TangentialRestitution, 2.0);
     assert_eq!(largest, Some(1.0 / 501.0));
 }
 
@@ -42,7 +44,7 @@ fn two_steps_a_contact_are_errors_not_failures() {
             let error = row.eps_t.expect("errors").worst.error;
             assert!(error > 0.05 && error.is_finite(), "{law}: {row:?}");
         }
-        assert_eq!(result.largest_step(Quantity::TangentialRestitution, 0.05), None);
+        assert_eq!(result.largest_step(SteppedQuantity::TangentialRestitution, 0.05), None);
     }
 }
 
@@ -77,10 +79,10 @@ fn no_step_is_no_hang() {
 
 #[test]
 fn more_contacts_than_memory_are_refused() {
-    let settings = Settings {
+    let settings = TimeStepSettings {
         contacts: vec![Contact::new(1.0, 1.0, 0.0).expect("parameters"); 2442],
         phases: 4096,
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
     let error = time_steps::run(&settings, progress::SILENT).expect_err("too many").to_string();
     let expected = "phases = 4096 with 2442 impacts make too many contacts; expected a product of \
@@ -95,8 +97,8 @@ fn contacts_that_do_not_end_have_no_errors() {
     let result = run(vec![contact("gran/hooke/history", [4.0, 0.5, 0.1, 0.0]), sticky], &[20.0]);
     let row = result.rows[0];
     assert_eq!((row.status, row.unfinished), (Status::Unfinished, 16));
-    assert!(Quantity::ALL.into_iter().all(|quantity| row.errors(quantity).is_none()));
-    assert!(Quantity::ALL.into_iter().all(|it| result.largest_step(it, 10.0).is_none()));
+    assert!(SteppedQuantity::ALL.into_iter().all(|quantity| row.errors(quantity).is_none()));
+    assert!(SteppedQuantity::ALL.into_iter().all(|it| result.largest_step(it, 10.0).is_none()));
     assert!(stepped(&sticky, 20.0, 0.5).is_none());
 }
 
@@ -109,9 +111,9 @@ fn impacts_that_hardly_slide_have_errors_of_their_own() {
         assert!(error > 0.01 && error < 0.2, "{psi:e}: {error}");
         assert!(row.energy.expect("errors").worst.error.is_finite());
     }
-    let tiny = Settings {
+    let tiny = TimeStepSettings {
         contacts: vec![contact("gran/hertz/history", [4.0, 1e-100, 0.2, 0.5])],
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
     let error = time_steps::run(&tiny, progress::SILENT).expect_err("out of range").to_string();
     assert!(error.starts_with("kappa = 4.0, psi = 1e-100, damping = 0.2: psi = 1e-100"), "{error}");

@@ -6,28 +6,27 @@ use std::path::Path;
 use fastrand::Rng;
 use stickslip_model::{Contact, Engine, InvalidValue, exact};
 use stickslip_plane::{Range, progress};
-use stickslip_practice::tables::{self, Settings, Table, TableError, Window};
-#[cfg(feature = "serde")]
-use stickslip_practice::tables::{Document, Keys};
+use stickslip_practice::tables::{self, Table, TableError, TableSettings, TableWindow};
+use stickslip_practice::tables::{Keys, TableDocument};
 
 use crate::c_program;
 
 /// A window of every kind of boundary: ends of contact, grazes in stick and in slip, crossings.
-fn small(bound: f64) -> Settings {
-    Settings { window: scaled((0.5, 4.5), (0.2, 2.4), 0.0), bound, regions: true }
+fn small(bound: f64) -> TableSettings {
+    TableSettings { window: scaled((0.5, 4.5), (0.2, 2.4), 0.0), bound, regions: true }
 }
 
-fn scaled(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Window {
+fn scaled(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> TableWindow {
     let [kappa, psi] = [kappa, psi].map(|(low, high)| Range { low, high });
-    Window::Scaled { kappa, psi, damping }
+    TableWindow::Scaled { kappa, psi, damping }
 }
 
-fn made(settings: &Settings) -> Table {
+fn made(settings: &TableSettings) -> Table {
     tables::run(settings, progress::SILENT).expect("a table")
 }
 
 fn exact_eps_t(table: &Table, kappa: f64, psi: f64) -> f64 {
-    let Window::Scaled { damping, .. } = table.window else { panic!("another window") };
+    let TableWindow::Scaled { damping, .. } = table.window else { panic!("another window") };
     let contact = Contact::new(kappa, psi, damping).expect("a contact");
     Engine::Exact.collide(contact).expect("a collision").0.eps_t()
 }
@@ -60,7 +59,7 @@ fn errors_are_within_the_bound() {
 fn a_kink_stays_a_kink() {
     // Where a stick phase comes to graze, the slope of ε_t jumps from −0.26 to −2.81.
     let window = scaled((4.9, 5.1), (0.25, 0.28), 0.0);
-    let settings = Settings { window, ..Settings::default() };
+    let settings = TableSettings { window, ..TableSettings::default() };
     let table = made(&settings);
     let (kappa, boundary) = (4.982599522946337, 0.26518218756776374);
     let slope = |step: f64| {
@@ -74,7 +73,7 @@ fn a_kink_stays_a_kink() {
 #[test]
 fn with_damping_too() {
     let window = scaled((2.0, 8.0), (0.1, 1.5), 0.3);
-    let settings = Settings { window, bound: 1e-5, regions: false };
+    let settings = TableSettings { window, bound: 1e-5, regions: false };
     let table = made(&settings);
     assert!(largest_error(&table, 5_000) <= 1e-5);
     let contact = Contact::new(3.0, 1.0, 0.3).unwrap();
@@ -136,19 +135,17 @@ fn threads_change_no_bit() {
 }
 
 #[test]
-#[cfg(feature = "serde")]
 fn a_document_makes_the_same_table() {
     let table = made(&small(1e-4));
-    let text = serde_json::to_string(&Document::from(&table)).unwrap();
-    let document: Document = serde_json::from_str(&text).unwrap();
+    let text = serde_json::to_string(&TableDocument::from(&table)).unwrap();
+    let document: TableDocument = serde_json::from_str(&text).unwrap();
     assert_eq!(Table::try_from(document), Ok(table));
 }
 
 #[test]
-#[cfg(feature = "serde")]
 fn a_document_with_fewer_keys_is_readable() {
     let table = made(&small(1e-4));
-    let mut document = Document::from(&table);
+    let mut document = TableDocument::from(&table);
     // Two keys of y become one, whose hint is that of the lower.
     let arrays = &mut document.arrays;
     let keys = arrays.strip_keys;
@@ -169,10 +166,9 @@ fn a_document_with_fewer_keys_is_readable() {
 }
 
 #[test]
-#[cfg(feature = "serde")]
 fn documents_that_contradict_themselves_are_refused() {
-    let document = Document::from(&made(&small(1e-3)));
-    let refused = |change: &dyn Fn(&mut Document)| {
+    let document = TableDocument::from(&made(&small(1e-3)));
+    let refused = |change: &dyn Fn(&mut TableDocument)| {
         let mut changed = document.clone();
         change(&mut changed);
         let error = Table::try_from(changed).expect_err("a contradiction");
@@ -211,7 +207,7 @@ fn documents_that_contradict_themselves_are_refused() {
 
 #[test]
 fn what_cannot_be_is_refused_with_numbers() {
-    let refused = |change: fn(&mut Settings)| {
+    let refused = |change: fn(&mut TableSettings)| {
         let mut settings = small(1e-4);
         change(&mut settings);
         tables::run(&settings, progress::SILENT).expect_err("no table")
@@ -266,7 +262,7 @@ fn the_header_for_c_has_the_same_bits() {
     if !c_program::can_be_compiled() {
         return;
     }
-    let settings = Settings { window: scaled((0.9, 4.5), (0.2, 2.4), 0.0), ..small(1e-6) };
+    let settings = TableSettings { window: scaled((0.9, 4.5), (0.2, 2.4), 0.0), ..small(1e-6) };
     let table = made(&settings);
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("table_header");
     fs::create_dir_all(&directory).unwrap();

@@ -3,8 +3,8 @@
 use stickslip_model::{Contact, End, Engine, Law, exact, presets};
 use stickslip_plane::progress::{self, Progress};
 use stickslip_practice::time_steps::{
-    self, Quantity, Scheme, Settings, Status, Stepped, TimeSteps, TimeStepsError, step,
-    undamped_contact_time,
+    self, Scheme, Status, Stepped, SteppedQuantity, TimeStepSettings, TimeSteps, TimeStepsError,
+    step, undamped_contact_time,
 };
 
 /// The contact of a law that has a name, with κ, ψ, damping and tangential damping.
@@ -15,7 +15,11 @@ pub fn contact(law: &str, [kappa, psi, damping, tangential]: [f64; 4]) -> Contac
 }
 
 pub fn run(contacts: Vec<Contact>, steps: &[f64]) -> TimeSteps {
-    let settings = Settings { contacts, steps_per_contact: steps.to_vec(), ..Settings::default() };
+    let settings = TimeStepSettings {
+        contacts,
+        steps_per_contact: steps.to_vec(),
+        ..TimeStepSettings::default()
+    };
     time_steps::run(&settings, progress::SILENT).expect("errors")
 }
 
@@ -31,7 +35,7 @@ fn errors_fall_as_the_step_does() {
     // κ, ψ, damping, tangential damping, and where the energy weighs ε_t: damped laws.
     for law in ["gran/hooke/history", "gran/hertz/history", "granular/hertz/tsuji/mindlin/force"] {
         let result = run(vec![contact(law, [4.0, 0.7, 0.2, 1.0])], &[1e2, 1e3, 1e4, 1e5]);
-        for quantity in Quantity::ALL {
+        for quantity in SteppedQuantity::ALL {
             let errors = |row: usize| result.rows[row].errors(quantity).expect("errors");
             for row in 1..4 {
                 let ratio = errors(row - 1).root_mean_square / errors(row).root_mean_square;
@@ -92,14 +96,15 @@ fn the_largest_step_holds_for_all_shorter_ones() {
     let steps: Vec<f64> = (4..40).map(|power| 1.3_f64.powi(power)).collect();
     let result = run(contacts, &steps);
     let mut broken = 0;
-    for quantity in Quantity::ALL {
-        let error = |row: &time_steps::Row| row.errors(quantity).expect("errors").worst.error;
+    for quantity in SteppedQuantity::ALL {
+        let error =
+            |row: &time_steps::TimeStepRow| row.errors(quantity).expect("errors").worst.error;
         for wanted in [1e-1, 1e-2, 1e-3, 1e-4] {
             let largest = result.largest_step(quantity, wanted);
-            let parts = |row: &&time_steps::Row| {
+            let parts = |row: &&time_steps::TimeStepRow| {
                 largest.is_some_and(|largest| 1.0 / row.steps_per_contact <= largest)
             };
-            let (inside, outside): (Vec<&time_steps::Row>, Vec<&time_steps::Row>) =
+            let (inside, outside): (Vec<&time_steps::TimeStepRow>, Vec<&time_steps::TimeStepRow>) =
                 result.rows.iter().partition(parts);
             assert!(inside.iter().all(|row| row.status == Status::Ok && error(row) <= wanted));
             let next = outside.last().expect("a step that is too long");
@@ -131,9 +136,9 @@ fn results_do_not_depend_on_threads() {
 fn progress_is_complete() {
     let (begun, advanced) =
         <(std::sync::atomic::AtomicUsize, std::sync::atomic::AtomicUsize)>::default();
-    let settings = Settings {
+    let settings = TimeStepSettings {
         contacts: vec![Contact::new(1.0, 1.0, 0.0).expect("parameters"); 3],
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
     let report = |progress| {
         let (counter, steps) = match progress {
@@ -167,11 +172,11 @@ fn the_paper_s_law_is_that_of_a_limited_force() {
 fn an_elapsed_first_step_is_more_accurate() {
     let contact = contact("gran/hooke/history", [2.0, 0.02, 0.0, 0.0]);
     let error = |scheme| {
-        let settings = Settings {
+        let settings = TimeStepSettings {
             contacts: vec![contact],
             steps_per_contact: vec![1000.0],
             scheme,
-            ..Settings::default()
+            ..TimeStepSettings::default()
         };
         let result = time_steps::run(&settings, progress::SILENT).expect("errors");
         result.rows[0].eps_t.expect("errors").root_mean_square
@@ -190,11 +195,11 @@ fn energy_weighs_both_restitutions() {
     let contact = Contact::new(5.0, 9.0, 0.3).expect("parameters");
     let stepped = stepped(&contact, 50.0, 0.5).expect("an end");
     assert!((stepped.eps_t - (1.0 - (1.0 + stepped.eps_n) / 9.0)).abs() < 1e-13);
-    let settings = Settings {
+    let settings = TimeStepSettings {
         contacts: vec![contact],
         steps_per_contact: vec![50.0],
         phases: 1,
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
     let result = time_steps::run(&settings, progress::SILENT).expect("errors");
     let exact = exact::collide(contact).expect("a collision");
@@ -209,11 +214,11 @@ fn energy_weighs_both_restitutions() {
 
 #[test]
 fn settings_out_of_range_are_refused() {
-    let usual = Settings {
+    let usual = TimeStepSettings {
         contacts: vec![Contact::new(1.0, 1.0, 0.0).expect("parameters")],
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
-    let message = |change: fn(&mut Settings)| {
+    let message = |change: fn(&mut TimeStepSettings)| {
         let mut settings = usual.clone();
         change(&mut settings);
         let error = time_steps::run(&settings, progress::SILENT).expect_err("a refusal");

@@ -8,9 +8,8 @@ use fastrand::Rng;
 use stickslip_model::spheres::{Body, BodyPair, Material, Sphere, Surface, Wall};
 use stickslip_model::{Engine, Law, presets};
 use stickslip_plane::{Range, progress};
-#[cfg(feature = "serde")]
-use stickslip_practice::tables::Document;
-use stickslip_practice::tables::{self, Settings, Table, TableError, Window};
+use stickslip_practice::tables::TableDocument;
+use stickslip_practice::tables::{self, Table, TableError, TableSettings, TableWindow};
 
 use crate::c_program;
 
@@ -25,14 +24,19 @@ fn with_damping(damping_time_s: f64, tangential_stiffness_kg_per_s2: f64) -> Bod
     BodyPair::equal_spheres(0.02, &steel, &surface).expect("a pair")
 }
 
-fn settings(pair: BodyPair, normal: (f64, f64), tangential: (f64, f64), bound: f64) -> Settings {
+fn settings(
+    pair: BodyPair,
+    normal: (f64, f64),
+    tangential: (f64, f64),
+    bound: f64,
+) -> TableSettings {
     let [normal_m_per_s, tangential_m_per_s] =
         [normal, tangential].map(|(low, high)| Range { low, high });
-    let window = Window::Velocities { pair, normal_m_per_s, tangential_m_per_s };
-    Settings { window, bound, regions: true }
+    let window = TableWindow::Velocities { pair, normal_m_per_s, tangential_m_per_s };
+    TableSettings { window, bound, regions: true }
 }
 
-fn small(bound: f64) -> Settings {
+fn small(bound: f64) -> TableSettings {
     settings(spheres(), (1.0, 8.0), (0.3, 12.0), bound)
 }
 
@@ -42,13 +46,13 @@ fn common() -> &'static Table {
     &TABLE
 }
 
-fn made(settings: &Settings) -> Table {
+fn made(settings: &TableSettings) -> Table {
     tables::run(settings, progress::SILENT).expect("a table")
 }
 
 /// ε_t, ε_n and the switches of an impact.
 fn exact(table: &Table, normal: f64, tangential: f64) -> (f64, f64, String) {
-    let Window::Velocities { pair, .. } = table.window else { panic!("another window") };
+    let TableWindow::Velocities { pair, .. } = table.window else { panic!("another window") };
     let contact = pair.impact(normal, tangential).expect("an impact").contact;
     let (collision, _) = Engine::Exact.collide(contact).expect("a collision");
     (collision.eps_t(), collision.eps_n, collision.itinerary())
@@ -195,15 +199,13 @@ fn threads_change_no_bit() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     assert_eq!(pool.install(|| made(&small(1e-4))), alone);
 }
-
-#[cfg(feature = "serde")]
 #[test]
 fn a_document_makes_the_same_table() {
     let table = common();
-    let text = serde_json::to_string(&Document::from(table)).unwrap();
-    let document: Document = serde_json::from_str(&text).unwrap();
+    let text = serde_json::to_string(&TableDocument::from(table)).unwrap();
+    let document: TableDocument = serde_json::from_str(&text).unwrap();
     assert_eq!(Table::try_from(document.clone()), Ok(table.clone()));
-    let refused = |change: &dyn Fn(&mut Document)| {
+    let refused = |change: &dyn Fn(&mut TableDocument)| {
         let mut changed = document.clone();
         change(&mut changed);
         assert!(Table::try_from(changed).is_err());
@@ -215,7 +217,7 @@ fn a_document_makes_the_same_table() {
     refused(&|it| it.window = other);
     let mut windows = serde_json::to_value(&document).unwrap();
     windows["window"]["velocities"]["damping"] = 0.1.into();
-    assert!(serde_json::from_value::<Document>(windows).is_err());
+    assert!(serde_json::from_value::<TableDocument>(windows).is_err());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use stickslip_plane::sealed;
 use stickslip_solver::margin::{Margin, Place};
 use stickslip_tracer::{
     Atlas, AtlasOptions, Document, End, Followed, Itinerary, Location, Names, Point, RunNames,
-    SCHEMA, SpecialPoint, VertexKind,
+    SCHEMA, SpecialPoint,
 };
 
 use crate::arrays::{expect_equal, numbers};
@@ -122,8 +122,7 @@ impl FamilyAtlas {
     #[getter]
     fn vertex_kinds(&self) -> Vec<&'static str> {
         let kinds = self.atlas.plane.vertices().iter().map(|vertex| match vertex.kind {
-            VertexKind::WindowEdge => "window-edge",
-            VertexKind::WindowCorner => "window-corner",
+            kind if kind.is_on_window() => kind.name(),
             _ => "other",
         });
         let mut kinds: Vec<_> = kinds.collect();
@@ -253,8 +252,7 @@ pub fn followed<'py>(
         End::Closed => "closed",
         End::Known(_) => "vertex",
         End::Vertex(special) => match special.kind {
-            VertexKind::WindowEdge => "window-edge",
-            VertexKind::WindowCorner => "window-corner",
+            kind if kind.is_on_window() => kind.name(),
             _ if special.solved => "vertex",
             _ => "stalled",
         },

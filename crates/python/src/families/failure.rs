@@ -3,7 +3,7 @@
 use std::fmt;
 
 use pyo3::prelude::*;
-use stickslip_tracer::{AtlasError, FamilyError, StackError, SubdivisionError, TraceError};
+use stickslip_tracer::{FamilyError, SubdivisionError, TraceError};
 
 use crate::failure::{bad_input, failed};
 
@@ -27,32 +27,24 @@ impl fmt::Display for UserError {
 
 impl std::error::Error for UserError {}
 
-/// The exception for a trace that failed.
-pub fn of_trace(error: &TraceError<UserError>) -> PyErr {
+/// The exception for an atlas or a stack that failed.
+pub fn of_trace(py: Python<'_>, error: &TraceError<UserError>) -> PyErr {
     match error {
-        TraceError::Option(_) | TraceError::Window { .. } => bad_input(error),
-        TraceError::Run { source, .. } => bad_input(source),
-        TraceError::TooManyCurves { .. } | TraceError::NotANumber { .. } => failed(error),
-    }
-}
-
-/// The exception for an atlas that failed.
-pub fn of_atlas(error: &AtlasError<UserError>) -> PyErr {
-    match error {
-        AtlasError::Trace(error) => of_trace(error),
-        AtlasError::Verify(_)
-        | AtlasError::Subdivision(
-            SubdivisionError::Window { .. } | SubdivisionError::Tolerance { .. },
+        TraceError::Option(_)
+        | TraceError::Window { .. }
+        | TraceError::Values
+        | TraceError::Width(_)
+        | TraceError::Subdivision(
+            SubdivisionError::Window { .. }
+            | SubdivisionError::Tolerance { .. }
+            | SubdivisionError::Distances { .. }
+            | SubdivisionError::Labels { .. },
         ) => bad_input(error),
-        AtlasError::Subdivision(_) => failed(error),
-    }
-}
-
-/// The exception for a stack that failed.
-pub fn of_stack(py: Python<'_>, error: &StackError<UserError>) -> PyErr {
-    match error {
-        StackError::Values | StackError::Width(_) => bad_input(error),
-        StackError::Atlas { value, source } => with_value(py, of_atlas(source), *value),
+        TraceError::Run { source, .. } => bad_input(source),
+        TraceError::TooManyCurves { .. }
+        | TraceError::NotANumber { .. }
+        | TraceError::Subdivision(_) => failed(error),
+        TraceError::Layer { value, source } => with_value(py, of_trace(py, source), *value),
     }
 }
 

@@ -203,7 +203,7 @@ impl HybridFamily {
         if let Some(error) = trouble.take_failure() {
             return Err(error);
         }
-        let Some(found) = found.map_err(|error| of_trace(&error))? else { return Ok(None) };
+        let Some(found) = found.map_err(|error| of_trace(py, &error))? else { return Ok(None) };
         Ok(Some(followed(py, &found)?))
     }
 }

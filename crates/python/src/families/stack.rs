@@ -8,7 +8,7 @@ use stickslip_tracer::{AtlasOptions, Change, Itinerary, Layer, Stack, StackOptio
 
 use crate::failure::bad_input;
 use crate::families::atlas::{FamilyAtlas, Label, expect_like, label};
-use crate::families::failure::{of_stack, with_value};
+use crate::families::failure::{of_trace, with_value};
 use crate::families::family::{HybridFamily, window_of};
 use crate::families::runner::Runner;
 use crate::families::survey::{Callbacks, watched};
@@ -50,7 +50,7 @@ pub fn stack_family(
         Stack::watched(family, &window_of(window), &values, &options, executor, watch)
     });
     let (made, wish) = found.map_err(|error| with_value(py, error, lock(&families.kept).value))?;
-    let stack = made.map_err(|error| of_stack(py, &error))?;
+    let stack = made.map_err(|error| of_trace(py, &error))?;
     let objection = stack.objection();
     let Stack { layers, changes, atlases, finished, .. } = stack;
     let of_layer = |layer: Layer<_, _>| {

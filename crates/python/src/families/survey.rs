@@ -11,12 +11,11 @@ use std::time::Instant;
 use pyo3::prelude::*;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{
-    AtlasError, AtlasOf, AtlasOptions, Executor, FreeRunOf, LabelOf, Point, Progress, Serial,
-    Surveyor, Watch,
+    AtlasOf, AtlasOptions, Executor, FreeRunOf, LabelOf, Point, Progress, Serial, Surveyor, Watch,
 };
 
 use crate::failure::failed;
-use crate::families::failure::{UserError, of_atlas};
+use crate::families::failure::{UserError, of_trace};
 use crate::families::runner::Runner;
 use crate::hybrid::trouble::{Trouble, lock};
 use crate::parallel::{PAUSE, Threads};
@@ -65,14 +64,14 @@ pub fn survey(
     options: AtlasOptions,
     threads: Option<usize>,
     callbacks: &Callbacks,
-    work: impl Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, AtlasError<UserError>>
+    work: impl Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, TraceError<UserError>>
     + Send
     + Sync,
 ) -> PyResult<(AtlasOf<Runner>, Option<PyErr>)> {
     let (made, wish) = watched(py, runner.trouble(), threads, callbacks, |executor, watch| {
         work(&Surveyor { options, executor, watch }, runner)
     })?;
-    Ok((made.map_err(|error| of_atlas(&error))?, wish))
+    Ok((made.map_err(|error| of_trace(py, &error))?, wish))
 }
 
 /// What `work` makes, and an exception that has asked for an end.

@@ -24,9 +24,6 @@ pub const KAPPA: Range = Range { low: 0.05, high: 100.0 };
 pub const PSI: Range = Range { low: 0.01, high: 3.0 };
 
 /// Computes the part.
-///
-/// # Errors
-/// The boundaries cannot be traced.
 pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let frame = Frame::new(KAPPA, PSI, 0.0);
     let tolerance = frame.tolerances().usual;
@@ -98,7 +95,6 @@ fn headline(verified: &Atlas) -> String {
 }
 
 /// What is in an atlas and how it was verified, in sentences.
-#[must_use]
 pub fn summary(verified: &Atlas) -> String {
     let (map, report) = (&verified.regions, &verified.report);
     let agree = if report.agrees { "all agree with them" } else { "not all agree with them" };

@@ -10,18 +10,12 @@ use crate::error::ReproductionError;
 use crate::statements::Spring;
 
 /// The undamped collision at κ and ψ, by the exact solution.
-///
-/// # Errors
-/// [`ReproductionError`]: it cannot be computed.
 pub fn collide(kappa: f64, psi: f64) -> Result<Collision, ReproductionError> {
     Spring::Reset.collide(kappa, psi, 0.0)
 }
 
 /// The collision where the axis of stiffness shows `value`, at an impact ratio, and its course by
 /// Dormand–Prince 8(5,3).
-///
-/// # Errors
-/// [`ReproductionError`]: it cannot be computed.
 pub fn followed(
     reading: Reading,
     value: f64,
@@ -44,7 +38,7 @@ pub fn largest_compression(collision: &Collision) -> f64 {
     0.5 * collision.contact_time
 }
 
-/// The rows of [`super::columns::COURSE`]: a course as it is drawn in a panel `width` pixels wide.
+/// The rows of [`super::section::COURSE`]: a course as it is drawn in a panel `width` pixels wide.
 /// At a switch there are two rows.
 pub fn rows(collision: &Collision, history: &History, width: f64) -> Vec<Vec<Cell>> {
     let course = Course::new(collision, history, width);

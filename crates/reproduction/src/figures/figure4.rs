@@ -11,10 +11,10 @@ use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, 
 use stickslip_studies::{Column, Study, Table};
 
 use super::boundaries::summary;
-use super::columns::{AXIS, KAPPA, PHASES, SWITCHES};
 use super::points::{Interval, LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
 use super::section::Section;
+use super::section::{AXIS, KAPPA, PHASES, SWITCHES};
 use super::stiffness_map::{StiffnessMap, title};
 use crate::error::ReproductionError;
 
@@ -38,9 +38,6 @@ const COLUMNS: [Column; 7] = [
 type Lines = [Vec<Interval>; 2];
 
 /// Computes the part.
-///
-/// # Errors
-/// Boundaries cannot be traced, or the picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let verified = reproduction.boundaries()?;
     let lines =

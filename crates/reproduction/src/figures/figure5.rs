@@ -8,11 +8,11 @@ use stickslip_model::Collision;
 use stickslip_studies::paper::{ALPHA, MU, Reading, STIFFNESS};
 use stickslip_studies::{Cell, Column, Study, Table};
 
-use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, POINT, RATIO, SWITCHES};
 use super::course::{first_and_last, followed, largest_compression, rows};
 use super::points::{LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
 use super::section::Section;
+use super::section::{AXIS, COURSE, EPS_T, KAPPA, PHASES, POINT, RATIO, SWITCHES};
 use super::stiffness_map::title;
 use crate::error::ReproductionError;
 
@@ -33,9 +33,6 @@ const COLUMNS: [Column; 10] = [
 ];
 
 /// Computes the part.
-///
-/// # Errors
-/// Boundaries cannot be traced, or a collision cannot be computed.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let points = points(&intervals(reproduction, Reading::Axis)?)?;
     let (mut findings, mut tables, mut pictures) = (Vec::new(), Vec::new(), Vec::new());

@@ -10,10 +10,10 @@ use stickslip_model::history::History;
 use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
 use stickslip_studies::{Column, Study, Table};
 
-use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use super::course::{followed, rows};
 use super::reproduction::Reproduction;
 use super::section::Section;
+use super::section::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use crate::error::ReproductionError;
 
 /// The title of the part.
@@ -24,9 +24,6 @@ const FIRST_MINIMUM: Column =
 const COLUMNS: [Column; 7] = [AXIS, KAPPA, RATIO, SWITCHES, PHASES, FIRST_MINIMUM, EPS_T];
 
 /// Computes the part.
-///
-/// # Errors
-/// A collision cannot be computed.
 pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let (mut findings, mut summary) = (Vec::new(), Vec::new());
     let (mut tables, mut pictures) = (Vec::new(), Vec::new());

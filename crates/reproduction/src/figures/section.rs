@@ -8,8 +8,8 @@ use std::sync::Arc;
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Engine;
 use stickslip_plane::atlas::Atlas;
-use stickslip_plane::sweep::{Failed, FailureCount};
-use stickslip_studies::Study;
+use stickslip_plane::sweep::FailureCount;
+use stickslip_studies::{Column, Study};
 
 use super::sweep::Sweep;
 use crate::statements::Audit;
@@ -28,7 +28,7 @@ pub struct Section {
     /// Data beside those of the study.
     pub files: Vec<DataFile>,
     /// What speaks against its results.
-    pub objections: Vec<Objection>,
+    pub objections: Vec<String>,
 }
 
 /// Data for a file.
@@ -51,45 +51,19 @@ pub enum Content {
     Atlas(Arc<Atlas>),
 }
 
-/// Something that speaks against a result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Objection {
-    /// Points of a map have no result.
-    #[error("{file}: {} of {points} points could not be computed; the first, {failed}", failed.points)]
-    Points {
-        /// The file of the map.
-        file: String,
-        /// The number of its points.
-        points: usize,
-        /// The points without a result.
-        failed: Failed,
-    },
-    /// An atlas may be wrong.
-    #[error("{file}: the atlas is complete, but may be wrong: {reason}")]
-    Doubtful {
-        /// The file of the atlas.
-        file: String,
-        /// What its verification found.
-        reason: String,
-    },
-}
-
 /// The main results of all `sections`, a sentence each: the opening of a page that shows them.
-#[must_use]
 pub fn headlines(sections: &[Section]) -> Vec<String> {
     sections.iter().flat_map(|section| &section.study.headlines).cloned().collect()
 }
 
 impl Section {
     /// A study with its pictures, and nothing else.
-    #[must_use]
     pub fn new(study: Study, pictures: Vec<Picture>) -> Self {
         let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());
         Self { study, pictures, shown, audit: None, files, objections }
     }
 
     /// The names of all files with data, and what they hold.
-    #[must_use]
     pub fn data(&self) -> Vec<(String, &str)> {
         let tables = self.study.tables.iter();
         let tables = tables.map(|table| (format!("{}.csv", table.name), table.title.as_str()));
@@ -98,27 +72,45 @@ impl Section {
     }
 
     /// The section with a map as `name`.npz, and with what speaks against the map.
-    #[must_use]
     pub(super) fn with_map(mut self, name: &str, title: String, sweep: &Arc<Sweep>) -> Self {
         let name = format!("{name}.npz");
         let mut count = FailureCount::default();
         count.add(0, &sweep.results);
         if let Some(failed) = count.failed(&sweep.grid, Engine::Exact) {
-            let (file, points) = (name.clone(), sweep.grid.points());
-            self.objections.push(Objection::Points { file, points, failed });
+            let (count, points) = (failed.points, sweep.grid.points());
+            self.objections.push(format!(
+                "{name}: {count} of {points} points could not be computed; the first, {failed}"
+            ));
         }
         self.files.push(DataFile { name, title, content: Content::Map(Arc::clone(sweep)) });
         self
     }
 
     /// The section with an atlas as `name`, and with what speaks against the atlas.
-    #[must_use]
     pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
         if let Some(reason) = atlas.objection() {
-            self.objections.push(Objection::Doubtful { file: name.clone(), reason });
+            let what = "the atlas is complete, but may be wrong";
+            self.objections.push(format!("{name}: {what}: {reason}"));
         }
         self.files.push(DataFile { name, title, content: Content::Atlas(Arc::clone(atlas)) });
         self
     }
 }
+
+pub const AXIS: Column = Column::headed("axis", "axis", "the reading of the axis of stiffness");
+pub const KAPPA: Column = Column::headed("kappa", "κ", "κ of (24)");
+pub const RATIO: Column = Column::headed("ratio", "g_t/g_n", "impact ratio g_t/g_n");
+pub const POINT: Column = Column::headed("point", "point", "point of Figure 4");
+pub const SWITCHES: Column = Column::headed("switch_count", "switches", "number of switches");
+pub const PHASES: Column =
+    Column::headed("itinerary", "phases", "the phases, one character for each");
+pub const EPS_T: Column = Column::headed("eps_t", "ε_t", "tangential restitution ε_t");
+
+/// The course of a collision in time.
+pub const COURSE: [Column; 4] = [
+    Column::new("time", "scaled time"),
+    Column::new("normal_force", "F_n in units of m β^{2/5} g_n^{6/5}"),
+    Column::new("tangential_force", "F_t/μ in the same units"),
+    Column::new("velocity", "w = (α/μ) g_t/g_n"),
+];

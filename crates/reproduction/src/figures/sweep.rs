@@ -17,19 +17,16 @@ pub struct Sweep {
 
 impl Sweep {
     /// Computes the collisions of `grid`.
-    #[must_use]
     pub fn new(grid: Grid) -> Self {
         Self { grid, results: sweep::compute(&grid, Engine::Exact, 0..grid.points()) }
     }
 
     /// The restitution as a panel of a picture.
-    #[must_use]
     pub fn restitution<'a>(&'a self, heading: &'a str) -> MapPanel<'a> {
         self.panel(heading, Values::Restitution(&self.results.eps_t))
     }
 
     /// The number of switches as a panel of a picture.
-    #[must_use]
     pub fn switches<'a>(&'a self, heading: &'a str) -> MapPanel<'a> {
         self.panel(heading, Values::Switches(&self.results.switch_count))
     }
@@ -40,28 +37,24 @@ impl Sweep {
     }
 
     /// `quantity` at a point.
-    #[must_use]
     pub fn value(&self, quantity: Quantity, point: usize) -> f64 {
         let (column, row) = self.grid.cell(point);
         self.grid.value(quantity, column, row)
     }
 
     /// The point where `value` is largest, and the value there.
-    #[must_use]
     pub fn largest(&self, value: impl Fn(usize) -> f64) -> (usize, f64) {
         let values = (0..self.grid.points()).map(|point| (point, value(point)));
         values.fold((0, f64::NEG_INFINITY), |most, next| if next.1 > most.1 { next } else { most })
     }
 
     /// ε_t minus that of pure Coulomb sliding.
-    #[must_use]
     pub fn above_sliding(&self, point: usize) -> f64 {
         let sliding = coulomb::restitution(self.value(Quantity::Psi, point), 1.0);
         self.results.eps_t[point] - sliding
     }
 
     /// The largest number of switches.
-    #[must_use]
     pub fn most_switches(&self) -> i32 {
         self.results.switch_count.iter().copied().max().unwrap_or(0)
     }

@@ -12,13 +12,13 @@ use stickslip_studies::paper::{
 };
 use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
-use super::sampling::{each, geometric};
-use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
 /// 12: the spring's elongation is at most μ/(ακ) (25), so that |ε_t| ≤ (g_n/g_t) μ/(α√κ) (26, 27).
-pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
+pub fn largest(subject: &Subject) -> Result<StatementFinding, Stop> {
     const CLOSE: f64 = 1e-9;
     let elongation =
         |[kappa, psi]: [f64; 2]| Ok(kappa * subject.spring.largest_elongation(kappa, psi)?);
@@ -58,7 +58,7 @@ pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
         if speed.value <= largest::FORCE { "within" } else { "beyond" },
     );
     let kept = spring.value.max(speed.value) <= 1.0 + CLOSE;
-    Ok(Finding::new(Verdict::of(kept), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(kept), evidence, explanation))
 }
 
 /// The largest `value` over κ from 0.01 to 10⁴ and ψ from 0.01 to 3.
@@ -80,7 +80,7 @@ fn worst(
 }
 
 /// 13: ε_t vanishes as the spring becomes stiff.
-pub fn stiff(subject: &Subject) -> Result<Finding, Stop> {
+pub fn stiff(subject: &Subject) -> Result<StatementFinding, Stop> {
     const EACH: usize = 32;
     const SMALL: f64 = 0.01;
     const DECADES: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
@@ -119,11 +119,11 @@ pub fn stiff(subject: &Subject) -> Result<Finding, Stop> {
         largest[3]
     );
     let falls = largest.windows(2).all(|pair| pair[1] < pair[0]) && largest[3] < SMALL;
-    Ok(Finding::new(Verdict::of(falls), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(falls), evidence, explanation))
 }
 
 /// 14: in the range (30) ε_t is close to zero.
-pub fn close_to_zero(subject: &Subject) -> Result<Finding, Stop> {
+pub fn close_to_zero(subject: &Subject) -> Result<StatementFinding, Stop> {
     /// What counts as close, and how much larger than (27) demands the ratio is.
     const CLOSE: f64 = 0.1;
     const MUCH: f64 = 3.0;
@@ -152,18 +152,18 @@ pub fn close_to_zero(subject: &Subject) -> Result<Finding, Stop> {
         kappas[kappas.len() - 1]
     );
     Ok(match close {
-        0 => Finding::new(Verdict::Holds, evidence, explanation),
-        n if n < kappas.len() => Finding::under(
+        0 => StatementFinding::new(Verdict::Holds, evidence, explanation),
+        n if n < kappas.len() => StatementFinding::under(
             format!("from κ = {:.1} on, of those tried", kappas[n]),
             evidence,
             explanation,
         ),
-        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
+        _ => StatementFinding::new(Verdict::DoesNotHold, evidence, explanation),
     })
 }
 
 /// 15: in max(const, 1 − 2/ψ) const = 0 is the only sensible choice.
-pub fn pragmatic(subject: &Subject) -> Result<Finding, Stop> {
+pub fn pragmatic(subject: &Subject) -> Result<StatementFinding, Stop> {
     const COLUMNS: usize = 200;
     const ROWS: usize = 175;
     /// The gain that makes another choice sensible.
@@ -216,11 +216,11 @@ pub fn pragmatic(subject: &Subject) -> Result<Finding, Stop> {
         100.0 * GAIN
     );
     let [printed, axis] = sensible;
-    Ok(Finding::by_reading([printed && axis, axis], evidence, explanation))
+    Ok(StatementFinding::by_reading([printed && axis, axis], evidence, explanation))
 }
 
 /// 25: ε_t of the steel spheres of Figure 2 is negative at small g_t, down to -0.6.
-pub fn steel(subject: &Subject) -> Result<Finding, Stop> {
+pub fn steel(subject: &Subject) -> Result<StatementFinding, Stop> {
     /// A row of the figure that is seen has at least so much of its axis.
     const SEEN: f64 = 1.0 / 400.0;
     /// Over these g_n, ε_t has about eleven minima; smaller g_n need smaller g_t.
@@ -277,11 +277,11 @@ pub fn steel(subject: &Subject) -> Result<Finding, Stop> {
          {rows} rows on. It counts as seen in the figure if 400 rows show it.",
     );
     if -first.value > LEAST_EPS_T_2 {
-        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
     }
     if on_the_map <= LEAST_EPS_T_2 {
-        return Ok(Finding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
     }
     let condition = format!("up to g_t = {reached:.3} m/s, on a map of {rows} rows or more");
-    Ok(Finding::under(condition, evidence, explanation))
+    Ok(StatementFinding::under(condition, evidence, explanation))
 }

@@ -5,13 +5,13 @@ use stickslip_studies::paper::{MOST_SWITCHES, STIFFNESS, SWITCHES, ratio};
 use stickslip_studies::search::change;
 
 use super::line::{Line, Span};
-use super::sampling::{each, random};
-use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
 /// 6: at κ = 18 up to eight switches.
-pub fn eight(subject: &Subject) -> Result<Finding, Stop> {
+pub fn eight(subject: &Subject) -> Result<StatementFinding, Stop> {
     let [printed, read] = subject.lines()?;
     let mut evidence = Evidence::default();
     for line in [printed, read] {
@@ -35,11 +35,11 @@ pub fn eight(subject: &Subject) -> Result<Finding, Stop> {
         if at_read == SWITCHES { ", as if ακ were plotted" } else { "" }
     );
     let holds = [printed, read].map(|line| line.most() == MOST_SWITCHES);
-    Ok(Finding::by_reading(holds, evidence, explanation))
+    Ok(StatementFinding::by_reading(holds, evidence, explanation))
 }
 
 /// 7: there are half as many reversals as switches.
-pub fn reversals(subject: &Subject) -> Result<Finding, Stop> {
+pub fn reversals(subject: &Subject) -> Result<StatementFinding, Stop> {
     let lines = subject.lines()?;
     let differs = |span: &&Span| 2 * span.reversals != span.switch_count;
     let share = |line: &Line| {
@@ -72,11 +72,11 @@ pub fn reversals(subject: &Subject) -> Result<Finding, Stop> {
         lines[1].kappa,
         intervals.len()
     );
-    Ok(Finding::new(Verdict::of(printed.max(read) == 0.0), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(printed.max(read) == 0.0), evidence, explanation))
 }
 
 /// 8: as the ratio falls, the count falls after its maximum, with brief rises by two.
-pub fn rises(subject: &Subject) -> Result<Finding, Stop> {
+pub fn rises(subject: &Subject) -> Result<StatementFinding, Stop> {
     let lines = subject.lines()?;
     let mut evidence = Evidence::default();
     let mut true_at = [false; 2];
@@ -96,8 +96,10 @@ pub fn rises(subject: &Subject) -> Result<Finding, Stop> {
         lines[1].falling()
     );
     Ok(match true_at {
-        [true, false] => Finding::under(format!("at κ = {STIFFNESS}"), evidence, explanation),
-        both => Finding::by_reading(both, evidence, explanation),
+        [true, false] => {
+            StatementFinding::under(format!("at κ = {STIFFNESS}"), evidence, explanation)
+        }
+        both => StatementFinding::by_reading(both, evidence, explanation),
     })
 }
 
@@ -133,7 +135,7 @@ impl Rises {
 
 /// 21: at b, c, d all switches are in the decompression, at e the first one just before the largest
 /// compression.
-pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
+pub fn decompression(subject: &Subject) -> Result<StatementFinding, Stop> {
     let [_, read] = subject.lines()?;
     let kappa = read.kappa;
     let middle = 0.5 * exact::CONTACT_TIME;
@@ -181,18 +183,18 @@ pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
         100.0 * early_part
     );
     if !late || early_part == 0.0 {
-        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
     }
     if early_part == 1.0 {
-        return Ok(Finding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
     }
     let condition =
         format!("if e lies below ψ = {passes:.6}, g_t/g_n = {:.6} in the figures", ratio(passes));
-    Ok(Finding::under(condition, evidence, explanation))
+    Ok(StatementFinding::under(condition, evidence, explanation))
 }
 
 /// 23: ε_t is negative after an odd number of reversals and positive after an even one.
-pub fn signs(subject: &Subject) -> Result<Finding, Stop> {
+pub fn signs(subject: &Subject) -> Result<StatementFinding, Stop> {
     const TRIED: usize = 100_000;
     let wrong = |tried: Vec<[f64; 3]>| -> Result<usize, ReproductionError> {
         let wrong = each(&tried, |&[kappa, psi, damping]| {
@@ -215,11 +217,11 @@ pub fn signs(subject: &Subject) -> Result<Finding, Stop> {
          of the velocity. They are counted phase by phase; the sign is that at the end.",
         TRIED / 5
     );
-    Ok(Finding::new(Verdict::of(undamped + damped == 0), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(undamped + damped == 0), evidence, explanation))
 }
 
 /// 24: for a small enough ratio there are two switches.
-pub fn small_ratio(subject: &Subject) -> Result<Finding, Stop> {
+pub fn small_ratio(subject: &Subject) -> Result<StatementFinding, Stop> {
     const PSI: f64 = 1e-7;
     const INTERVALS: u32 = 12;
     let count = |kappa: f64| -> Result<usize, ReproductionError> {
@@ -254,11 +256,11 @@ pub fn small_ratio(subject: &Subject) -> Result<Finding, Stop> {
     let two: Vec<_> =
         (0..).zip(&counts).filter(|(_, count)| **count == 2).map(|(n, _)| n).collect();
     Ok(if two.len() == counts.len() {
-        Finding::new(Verdict::Holds, evidence, explanation)
+        StatementFinding::new(Verdict::Holds, evidence, explanation)
     } else if two.iter().copied().eq((0..INTERVALS).step_by(2)) {
         let condition = "for κ between κ_2m and κ_(2m+1), κ_n = (nπ/(2t_c))²";
-        Finding::under(condition.to_owned(), evidence, explanation)
+        StatementFinding::under(condition.to_owned(), evidence, explanation)
     } else {
-        Finding::new(Verdict::DoesNotHold, evidence, explanation)
+        StatementFinding::new(Verdict::DoesNotHold, evidence, explanation)
     })
 }

@@ -6,13 +6,13 @@ use stickslip_model::{Collision, Regime};
 use stickslip_studies::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ratio};
 use stickslip_studies::search::maximum;
 
-use super::sampling::{each, geometric};
-use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
 /// 19: the course of Fig. 6.
-pub fn figure_6(subject: &Subject) -> Result<Finding, Stop> {
+pub fn figure_6(subject: &Subject) -> Result<StatementFinding, Stop> {
     /// What counts as many, and as shortly after 1.
     const MANY: usize = 5;
     const SHORTLY: f64 = 1.1;
@@ -41,7 +41,7 @@ pub fn figure_6(subject: &Subject) -> Result<Finding, Stop> {
         sentences.concat(),
         kappas[1]
     );
-    Ok(Finding::by_reading(matches, evidence, explanation))
+    Ok(StatementFinding::by_reading(matches, evidence, explanation))
 }
 
 /// The first moment at which the tangential force turns from braking to driving. There y falls
@@ -58,7 +58,7 @@ fn first_minimum(collision: &Collision) -> Option<f64> {
 }
 
 /// 22: the elongation at the first switch grows as the ratio falls.
-pub fn first_elongation(subject: &Subject) -> Result<Finding, Stop> {
+pub fn first_elongation(subject: &Subject) -> Result<StatementFinding, Stop> {
     const LOWEST: f64 = 0.01;
     const HIGHEST: f64 = 1.999;
     const SAMPLES: usize = 2000;
@@ -99,15 +99,15 @@ pub fn first_elongation(subject: &Subject) -> Result<Finding, Stop> {
         places[0], places[1]
     );
     if exceptions > 0 {
-        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
     }
     if highest < 2.0 * LOWEST {
-        return Ok(Finding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
     }
     if lowest > 0.99 * HIGHEST {
-        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
     }
     let condition =
         format!("above ψ = {highest:.4}, that is g_t/g_n = {:.4} in the figures", ratio(highest));
-    Ok(Finding::under(condition, evidence, explanation))
+    Ok(StatementFinding::under(condition, evidence, explanation))
 }

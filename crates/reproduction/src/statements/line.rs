@@ -13,9 +13,9 @@ use stickslip_plane::{Chart, CollisionPlane};
 use stickslip_studies::search::change;
 use stickslip_tracer::{Family, Point, TraceOptions, trace};
 
-use super::sampling::geometric;
 use super::spring::Spring;
 use super::statement::Stop;
+use super::statement::geometric;
 use crate::error::ReproductionError;
 
 /// Half the window's width in ln κ.
@@ -81,11 +81,6 @@ impl Line {
 }
 
 /// The line at `kappa`.
-///
-/// # Errors
-/// [`Stop::Failed`]: a collision cannot be computed. [`Stop::Open`]: the boundaries are in doubt,
-/// because the tracer could not explain something, or because a collision does not have the
-/// switches of its stretch.
 pub fn line(spring: Spring, kappa: f64) -> Result<Line, Stop> {
     let (method, boundaries) = match spring {
         Spring::Reset => ("traced and solved for", traced(kappa)?),

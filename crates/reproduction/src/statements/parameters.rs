@@ -7,14 +7,14 @@ use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_solver::Outcome;
 use stickslip_studies::three_parameters::ThreeParameters;
 
-use super::sampling::{each, random};
 use super::spring::Spring;
-use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
 /// 2: three independent parameters; these are κ, g_t/g_n and μ/α.
-pub fn three(subject: &Subject) -> Result<Finding, Stop> {
+pub fn three(subject: &Subject) -> Result<StatementFinding, Stop> {
     const CLOSE: f64 = 1e-9;
     let mut draw = Rng::with_seed(2);
     let contacts = random(1000, 2, false);
@@ -60,7 +60,7 @@ pub fn three(subject: &Subject) -> Result<Finding, Stop> {
         cases.len()
     );
     let two = largest < CLOSE && in_si < CLOSE && over_kappa.min(over_psi) > 0.01;
-    Ok(Finding::new(Verdict::of(!two), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(!two), evidence, explanation))
 }
 
 /// κ and ψ of spheres in SI units that are chosen to have `kappa` and `psi`.

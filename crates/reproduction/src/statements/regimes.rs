@@ -2,8 +2,8 @@
 
 use stickslip_model::{Collision, Regime};
 
-use super::sampling::{each, random};
-use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
@@ -11,7 +11,7 @@ use crate::error::ReproductionError;
 const TRIED: usize = 10_000;
 
 /// 3: the contact starts with sliding.
-pub fn start(subject: &Subject) -> Result<Finding, Stop> {
+pub fn start(subject: &Subject) -> Result<StatementFinding, Stop> {
     let sliding = |seed, damped| -> Result<(usize, usize), ReproductionError> {
         let tried = random(TRIED, seed, damped);
         let expected = tried.iter().filter(|contact| slides_first(contact)).count();
@@ -39,9 +39,11 @@ pub fn start(subject: &Subject) -> Result<Finding, Stop> {
         return Err(Stop::Open("the integration starts in another regime".to_owned()));
     }
     Ok(match (undamped == TRIED, damped == TRIED) {
-        (true, true) => Finding::new(Verdict::Holds, evidence, explanation),
-        (true, false) => Finding::under("without damping".to_owned(), evidence, explanation),
-        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
+        (true, true) => StatementFinding::new(Verdict::Holds, evidence, explanation),
+        (true, false) => {
+            StatementFinding::under("without damping".to_owned(), evidence, explanation)
+        }
+        _ => StatementFinding::new(Verdict::DoesNotHold, evidence, explanation),
     })
 }
 
@@ -53,7 +55,7 @@ fn slides_first([kappa, psi, damping]: &[f64; 3]) -> bool {
 }
 
 /// 4: the contact ends with sliding.
-pub fn end(subject: &Subject) -> Result<Finding, Stop> {
+pub fn end(subject: &Subject) -> Result<StatementFinding, Stop> {
     let last = each(&random(TRIED, 4, false), |&[kappa, psi, damping]| {
         let collision = subject.integrate(kappa, psi, damping)?;
         let left = collision.switches.last().map_or(collision.contact_time, |last| last.time_left);
@@ -70,11 +72,11 @@ pub fn end(subject: &Subject) -> Result<Finding, Stop> {
          Only a spring at rest with no elongation, as with g_t = 0, stays below it. The shortest last \
          sliding took {shortest:.1e}."
     );
-    Ok(Finding::new(Verdict::of(sticking == 0), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(sticking == 0), evidence, explanation))
 }
 
 /// 5: the number of switches is even.
-pub fn parity(subject: &Subject) -> Result<Finding, Stop> {
+pub fn parity(subject: &Subject) -> Result<StatementFinding, Stop> {
     let odd = |seed, damped| -> Result<usize, ReproductionError> {
         let odd = each(&random(TRIED, seed, damped), |&[kappa, psi, damping]| {
             Ok(subject.integrate(kappa, psi, damping)?.switches.len() % 2)
@@ -93,14 +95,14 @@ pub fn parity(subject: &Subject) -> Result<Finding, Stop> {
          and ends with sliding."
     );
     Ok(match (undamped, damped) {
-        (0, 0) => Finding::new(Verdict::Holds, evidence, explanation),
-        (0, _) => Finding::under("without damping".to_owned(), evidence, explanation),
-        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
+        (0, 0) => StatementFinding::new(Verdict::Holds, evidence, explanation),
+        (0, _) => StatementFinding::under("without damping".to_owned(), evidence, explanation),
+        _ => StatementFinding::new(Verdict::DoesNotHold, evidence, explanation),
     })
 }
 
 /// 17: with damping some collisions end with the spring.
-pub fn damped_end(subject: &Subject) -> Result<Finding, Stop> {
+pub fn damped_end(subject: &Subject) -> Result<StatementFinding, Stop> {
     let tried = random(2 * TRIED, 17, true);
     let last = each(&tried, |&[kappa, psi, damping]| {
         let collision = subject.integrate(kappa, psi, damping)?;
@@ -124,11 +126,11 @@ pub fn damped_end(subject: &Subject) -> Result<Finding, Stop> {
          ψ, which random collisions do not meet.",
         tried.len()
     );
-    Ok(Finding::new(Verdict::of(sticking > 0), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(sticking > 0), evidence, explanation))
 }
 
 /// 18: damping changes quantities, but not how a collision goes.
-pub fn damping(subject: &Subject) -> Result<Finding, Stop> {
+pub fn damping(subject: &Subject) -> Result<StatementFinding, Stop> {
     const SMALL: f64 = 1e-6;
     let tried = random(2000, 18, false);
     let compared = each(&tried, |&[kappa, psi, _]| {
@@ -151,11 +153,11 @@ pub fn damping(subject: &Subject) -> Result<Finding, Stop> {
          {largest:.1e} at most. Quantities change little, but the contact starts in another way.",
         tried.len()
     );
-    Ok(Finding::new(Verdict::of(starts + parities == 0), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(starts + parities == 0), evidence, explanation))
 }
 
 /// 20: energy is lost only while sliding.
-pub fn energy(subject: &Subject) -> Result<Finding, Stop> {
+pub fn energy(subject: &Subject) -> Result<StatementFinding, Stop> {
     const CLOSE: f64 = 1e-9;
     let ledgers = each(&random(TRIED, 20, false), |&[kappa, psi, damping]| {
         let collision = subject.integrate(kappa, psi, damping)?;
@@ -183,7 +185,7 @@ pub fn energy(subject: &Subject) -> Result<Finding, Stop> {
          {sticking:.1e} of the energy at impact while the spring acts. What sliding takes explains the \
          loss to {unbalanced:.1e}. Both count as nothing up to {CLOSE:e}."
     );
-    Ok(Finding::new(Verdict::of(sticking.max(unbalanced) < CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(sticking.max(unbalanced) < CLOSE), evidence, explanation))
 }
 
 fn last_regime(collision: &Collision) -> Regime {

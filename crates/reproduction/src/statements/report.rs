@@ -31,13 +31,11 @@ const EVIDENCE: [Column; 3] = [
 
 impl Audit {
     /// The number of statements with a verdict.
-    #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         self.statements.iter().filter(|statement| statement.finding.verdict == verdict).count()
     }
 
     /// The tables `audit` and `audit_evidence`, and all of it as JSON.
-    #[must_use]
     pub fn study(&self) -> Study {
         let verdicts = self.statements.iter().map(|statement| {
             let Statement { number, paraphrase, place, finding } = statement;
@@ -135,7 +133,6 @@ impl Audit {
 
 impl Statement {
     /// The verdict with its condition.
-    #[must_use]
     pub fn verdict(&self) -> String {
         match &self.finding.condition {
             Some(condition) => format!("{}: {condition}", self.finding.verdict),

@@ -11,13 +11,13 @@ use stickslip_studies::paper::{
 };
 use stickslip_studies::search::change;
 
-use super::sampling::{each, geometric};
-use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
 /// 1: the closed form, whatever the normal law.
-pub fn closed_form(_: &Subject) -> Result<Finding, Stop> {
+pub fn closed_form(_: &Subject) -> Result<StatementFinding, Stop> {
     const EACH: usize = 60;
     const CLOSE: f64 = 1e-10;
     let mut random = Rng::with_seed(1);
@@ -46,11 +46,11 @@ pub fn closed_form(_: &Subject) -> Result<Finding, Stop> {
          impulse 1 + ε_n, whatever the law.",
         tried.len()
     );
-    Ok(Finding::new(Verdict::of(largest < CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(largest < CLOSE), evidence, explanation))
 }
 
 /// 9: no switch above g_t/g_n = 3 but for very small κ.
-pub fn above_three(subject: &Subject) -> Result<Finding, Stop> {
+pub fn above_three(subject: &Subject) -> Result<StatementFinding, Stop> {
     const RATIO: f64 = 3.0;
     /// What counts as very small.
     const SMALL: f64 = 1.0;
@@ -80,13 +80,13 @@ pub fn above_three(subject: &Subject) -> Result<Finding, Stop> {
         above.len()
     );
     if switching > 0 || limit > SMALL {
-        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
     }
-    Ok(Finding::under(format!("κ above {limit:.4}"), evidence, explanation))
+    Ok(StatementFinding::under(format!("κ above {limit:.4}"), evidence, explanation))
 }
 
 /// 10: the limit of pure sliding lies below 2μ/α.
-pub fn true_limit(subject: &Subject) -> Result<Finding, Stop> {
+pub fn true_limit(subject: &Subject) -> Result<StatementFinding, Stop> {
     const CLOSE: f64 = 1e-9;
     let mut evidence = Evidence::default();
     let (mut lowest, mut highest, mut from_formula) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -122,11 +122,11 @@ pub fn true_limit(subject: &Subject) -> Result<Finding, Stop> {
          {below:.6}. The closed form is 2 from κ = 0.5701 on and rises below. The statement counts as \
          true if the limit is below 2 by more than {CLOSE:e} at all of them."
     );
-    Ok(Finding::new(Verdict::of(highest < 2.0 - CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(highest < 2.0 - CLOSE), evidence, explanation))
 }
 
 /// 11: for small κ there is always a switch.
-pub fn vertical_line(subject: &Subject) -> Result<Finding, Stop> {
+pub fn vertical_line(subject: &Subject) -> Result<StatementFinding, Stop> {
     const HIGHEST: f64 = 1e5;
     let mut evidence = Evidence::default();
     let mut tops = Vec::new();
@@ -142,7 +142,7 @@ pub fn vertical_line(subject: &Subject) -> Result<Finding, Stop> {
     }
     let [first, second, ..] = tops.as_slice() else {
         let explanation = format!("Up to ψ = {HIGHEST:e} there is a switch at every small κ.");
-        return Ok(Finding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
     };
     let slope = (second.1 / first.1).ln() / (second.0 / first.0).ln();
     let evidence = evidence
@@ -155,7 +155,7 @@ pub fn vertical_line(subject: &Subject) -> Result<Finding, Stop> {
         first.0 * first.1,
         first.0
     );
-    Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation))
+    Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation))
 }
 
 /// The ψ between `low` and `high` above which there is no switch.
@@ -175,7 +175,7 @@ fn top(subject: &Subject, kappa: f64, low: f64, high: f64) -> Result<f64, Stop> 
 }
 
 /// 16: the numbers of footnote 2.
-pub fn footnote_2(_: &Subject) -> Result<Finding, Stop> {
+pub fn footnote_2(_: &Subject) -> Result<StatementFinding, Stop> {
     const PRINTED: f64 = 1.109e5;
     const FRICTION: f64 = 0.5;
     const SPEED_M_PER_S: f64 = 20.0;
@@ -222,5 +222,5 @@ pub fn footnote_2(_: &Subject) -> Result<Finding, Stop> {
         off(with_gpa),
         1e6 * FRICTION * force_n / STEEL_STIFFNESS_KG_PER_S2
     );
-    Ok(Finding::new(Verdict::of(off(as_printed) < CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(Verdict::of(off(as_printed) < CLOSE), evidence, explanation))
 }

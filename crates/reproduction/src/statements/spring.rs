@@ -17,7 +17,6 @@ pub enum Spring {
 
 impl Spring {
     /// The name of the model in reports.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Reset => "reset",
@@ -26,9 +25,6 @@ impl Spring {
     }
 
     /// The collision, by the exact solution where there is one.
-    ///
-    /// # Errors
-    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn collide(
         self,
         kappa: f64,
@@ -46,9 +42,6 @@ impl Spring {
     }
 
     /// The collision, integrated.
-    ///
-    /// # Errors
-    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn integrate(
         self,
         kappa: f64,
@@ -63,9 +56,6 @@ impl Spring {
     }
 
     /// The largest elongation of the spring without damping.
-    ///
-    /// # Errors
-    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn largest_elongation(self, kappa: f64, psi: f64) -> Result<f64, ReproductionError> {
         match self {
             Self::Reset => largest::spring(&self.collide(kappa, psi, 0.0)?)

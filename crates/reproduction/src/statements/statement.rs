@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use fastrand::Rng;
+use rayon::prelude::*;
 use stickslip_studies::Cell;
 
 use crate::error::ReproductionError;
@@ -17,12 +19,12 @@ pub struct Statement {
     /// The place of the statement in the paper.
     pub place: &'static str,
     /// What was found of it.
-    pub finding: Finding,
+    pub finding: StatementFinding,
 }
 
 /// What was found of a statement.
 #[derive(Debug)]
-pub struct Finding {
+pub struct StatementFinding {
     /// Whether the statement is true, by the rule that the explanation names.
     pub verdict: Verdict,
     /// The condition under which it holds, if there is one.
@@ -61,21 +63,18 @@ pub struct Evidence(Vec<(String, Cell)>);
 
 impl Statement {
     /// The command that tests this statement alone.
-    #[must_use]
     pub fn command(&self) -> String {
         format!("stickslip reproduce --statement {}", self.number)
     }
 }
 
-impl Finding {
+impl StatementFinding {
     /// A finding without a condition.
-    #[must_use]
     pub fn new(verdict: Verdict, evidence: Evidence, explanation: String) -> Self {
         Self { verdict, condition: None, evidence, explanation }
     }
 
     /// The finding that a statement holds under `condition`.
-    #[must_use]
     pub fn under(condition: String, evidence: Evidence, explanation: String) -> Self {
         let verdict = Verdict::HoldsWithACondition;
         Self { verdict, condition: Some(condition), evidence, explanation }
@@ -101,7 +100,6 @@ impl Finding {
 
 impl Verdict {
     /// The verdict on a statement that is either true or not.
-    #[must_use]
     pub fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::DoesNotHold }
     }
@@ -121,14 +119,13 @@ impl fmt::Display for Verdict {
 impl Stop {
     /// The finding of a test. If the test leaves the statement open, that is a finding too, with
     /// the verdict "cannot be decided".
-    ///
-    /// # Errors
-    /// [`ReproductionError`]: a collision cannot be computed.
-    pub fn into_finding(tested: Result<Finding, Self>) -> Result<Finding, ReproductionError> {
+    pub fn into_finding(
+        tested: Result<StatementFinding, Self>,
+    ) -> Result<StatementFinding, ReproductionError> {
         match tested {
             Ok(finding) => Ok(finding),
             Err(Self::Open(reason)) => {
-                Ok(Finding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
+                Ok(StatementFinding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
             }
             Err(Self::Failed(error)) => {
                 Err(Arc::try_unwrap(error).unwrap_or_else(ReproductionError::Shared))
@@ -145,21 +142,18 @@ impl<E: Into<ReproductionError>> From<E> for Stop {
 
 impl Evidence {
     /// The evidence with a further number.
-    #[must_use]
     pub fn number(mut self, name: impl Into<String>, value: f64) -> Self {
         self.0.push((name.into(), value.into()));
         self
     }
 
     /// The evidence with a further count.
-    #[must_use]
     pub fn count(mut self, name: impl Into<String>, value: usize) -> Self {
         self.0.push((name.into(), value.into()));
         self
     }
 
     /// The evidence with further words.
-    #[must_use]
     pub fn text(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
         self.0.push((name.into(), Cell::Text(value.into())));
         self
@@ -169,4 +163,30 @@ impl Evidence {
     pub fn iter(&self) -> impl Iterator<Item = &(String, Cell)> {
         self.0.iter()
     }
+}
+
+/// The results of `of` for all `inputs`, in their order, on the threads of the current pool.
+pub fn each<T: Sync, U: Send>(
+    inputs: &[T],
+    of: impl Fn(&T) -> Result<U, ReproductionError> + Send + Sync,
+) -> Result<Vec<U>, ReproductionError> {
+    let results: Vec<_> = inputs.par_iter().map(of).collect();
+    results.into_iter().collect()
+}
+
+/// Random collisions [κ, ψ, a]: κ from 0.05 to 1000 and, if damped, a from 0.001 to 1, evenly in
+/// the logarithm; ψ from 0.01 to 3.
+pub fn random(count: usize, seed: u64, damped: bool) -> Vec<[f64; 3]> {
+    let mut random = Rng::with_seed(seed);
+    let mut draw = || {
+        let kappa = 0.05 * 20_000_f64.powf(random.f64());
+        let psi = 0.01 + 2.99 * random.f64();
+        [kappa, psi, if damped { 1e-3 * 1e3_f64.powf(random.f64()) } else { 0.0 }]
+    };
+    (0..count).map(|_| draw()).collect()
+}
+
+/// `count` numbers from `low` to `high`, evenly in the logarithm.
+pub fn geometric(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> + Clone {
+    (0..count).map(move |i| low * (high / low).powf(i as f64 / (count - 1) as f64))
 }

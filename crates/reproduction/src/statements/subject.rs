@@ -52,10 +52,6 @@ impl Subject {
     ///
     /// The first test that asks makes a line, on its thread alone: other threads that wait for the
     /// line may be part of the same pool.
-    ///
-    /// # Errors
-    /// [`Stop::Open`]: the boundaries are in doubt. [`Stop::Failed`]: a collision cannot be
-    /// computed.
     pub fn lines(&self) -> Result<[&Line; 2], Stop> {
         let [printed, axis] = Reading::kappas(STIFFNESS);
         Ok([self.line(0, printed)?, self.line(1, axis)?])

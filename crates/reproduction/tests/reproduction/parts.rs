@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use stickslip_plane::progress::SILENT;
 use stickslip_reproduction::figures::{Reproduction, Section, headlines};
 use stickslip_reproduction::statements::{
-    self, Audit, Evidence, Finding, Spring, Statement, Verdict,
+    self, Audit, Evidence, Spring, Statement, StatementFinding, Verdict,
 };
 use stickslip_studies::paper::{Reading, STIFFNESS, psi};
 use stickslip_studies::{Cell, Table, convergence};
@@ -138,7 +138,11 @@ fn the_headline_of_another_model_has_other_numbers() {
         number,
         paraphrase: "",
         place: "",
-        finding: Finding::new(Verdict::CannotBeDecided, Evidence::default(), String::new()),
+        finding: StatementFinding::new(
+            Verdict::CannotBeDecided,
+            Evidence::default(),
+            String::new(),
+        ),
     };
     let audit = Audit { spring: Spring::Reset, statements: vec![open(1), open(2)] };
     let headline = &audit.study().headlines[0];

@@ -7,7 +7,7 @@ use stickslip_model::history::History;
 use stickslip_model::{Collision, CollisionFailure, Contact, Engine, SpringEnergy};
 use stickslip_plane::GridAxis;
 
-use super::settings::{Named, Settings};
+use super::settings::{ContactLawSettings, Named};
 use crate::error::StudyError;
 
 /// What was computed of one law.
@@ -45,7 +45,7 @@ pub struct Kinds {
 }
 
 impl LawOnPlane {
-    pub(super) fn new(settings: &Settings, named: &Named) -> Result<Self, StudyError> {
+    pub(super) fn new(settings: &ContactLawSettings, named: &Named) -> Result<Self, StudyError> {
         let (mut undamped, mut damped) = (Kinds::default(), Kinds::default());
         let points = settings.cells * settings.cells;
         let [mut eps_t, mut difference] = [const { Vec::new() }; 2];
@@ -74,7 +74,6 @@ impl LawOnPlane {
     }
 
     /// What becomes of the energy in the spring.
-    #[must_use]
     pub fn spring(&self) -> SpringEnergy {
         self.named.law.spring_energy()
     }
@@ -112,7 +111,6 @@ impl Kinds {
     }
 
     /// The parity of the numbers of switches.
-    #[must_use]
     pub fn parity(&self) -> &'static str {
         match (self.parities.contains(&0), self.parities.contains(&1)) {
             (true, false) => "even",
@@ -122,7 +120,6 @@ impl Kinds {
     }
 
     /// The regimes of the first phases.
-    #[must_use]
     pub fn starts(&self) -> String {
         let names = self.starts.iter().map(|first| match first {
             'o' => "stick",

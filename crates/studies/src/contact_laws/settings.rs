@@ -8,7 +8,7 @@ use crate::limits::{MOST_CELLS, MOST_LAWS};
 
 /// The laws of a study, and the window over which they are computed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct ContactLawSettings {
     /// The laws; at most 24.
     pub laws: Vec<Named>,
     /// Interval of the scaled stiffness κ.
@@ -36,7 +36,7 @@ pub struct Named {
     pub tangential_damping: bool,
 }
 
-impl Default for Settings {
+impl Default for ContactLawSettings {
     /// The laws that have names, each once; κ up to 30, ψ up to 3; damping 0.2.
     fn default() -> Self {
         Self {
@@ -53,7 +53,6 @@ impl Default for Settings {
 
 /// The laws that have names, each with all of its names, in the order of the presets. A law is
 /// there twice if only one of its codes has tangential damping in this form.
-#[must_use]
 pub fn distinct() -> Vec<Named> {
     let mut laws: Vec<Named> = Vec::new();
     for preset in presets::ALL {
@@ -68,7 +67,7 @@ pub fn distinct() -> Vec<Named> {
     laws
 }
 
-impl Settings {
+impl ContactLawSettings {
     /// Checks all settings.
     ///
     /// # Errors

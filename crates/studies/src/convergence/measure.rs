@@ -68,7 +68,6 @@ pub struct Deviation {
 
 impl Approximation {
     /// The absolute errors, with `reference` for the truth.
-    #[must_use]
     pub fn deviation(&self, reference: &Collision) -> Deviation {
         let velocity = (self.final_velocity - reference.final_velocity).abs();
         let pairs = || self.switches.iter().zip(&reference.switches);
@@ -166,7 +165,6 @@ pub struct Errors {
 
 impl Errors {
     /// Whether all collisions have the right switches.
-    #[must_use]
     pub fn comparable(&self) -> bool {
         self.failed == 0 && self.other_switches == 0
     }
@@ -191,7 +189,6 @@ impl Errors {
 /// assert!((ratio.log2() - 8.0).abs() < 0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[must_use]
 pub fn measure(
     pair: EmbeddedPair,
     references: &[Collision],

@@ -33,13 +33,11 @@ pub struct PlainTime {
 
 impl PlainTime {
     /// The system of one contact: the paper's law at its κ, ψ and a, whatever law it has.
-    #[must_use]
     pub fn new(contact: Contact) -> Self {
         Self { contact }
     }
 
     /// The state at the start of contact.
-    #[must_use]
     pub fn start(&self) -> State<STATE> {
         State::from([0.0, 1.0, 0.0, self.contact.psi()])
     }

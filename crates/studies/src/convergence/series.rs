@@ -69,7 +69,6 @@ pub struct ErrorRow {
 }
 
 /// The steps or tolerances to which `order` was fitted.
-#[must_use]
 pub fn fitted(order: &Order) -> RangeInclusive<f64> {
     order.finest * (1.0 - 1e-9)..=order.coarsest * (1.0 + 1e-9)
 }
@@ -89,7 +88,6 @@ pub struct ErrorSeries {
 
 impl Control {
     /// The name of what decides, as files have it.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Step => "step",
@@ -118,7 +116,6 @@ impl Scheme {
     }
 
     /// The names of the method, of the coordinates and of what happens to switches.
-    #[must_use]
     pub fn names(self) -> [&'static str; 3] {
         let coordinates = match self.coordinates {
             Coordinates::Regularized => "regularised",

@@ -88,7 +88,6 @@ impl Convergence {
     }
 
     /// Evaluations of the right-hand side for each collision that was integrated.
-    #[must_use]
     pub fn work(&self, errors: &Errors) -> f64 {
         errors.right_hand_sides as f64 / (self.references.len() - errors.failed) as f64
     }

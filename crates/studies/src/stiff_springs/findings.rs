@@ -1,7 +1,7 @@
 //! What was found, in sentences with their numbers.
 
 use super::StiffSprings;
-use super::fit::{Estimate, Fits};
+use super::fit::{Fits, FittedConstant};
 use super::limit::BOUND_FACTOR;
 use super::maxima::LargestRestitution;
 use super::profile::{ComparedCollision, Profile};
@@ -196,7 +196,7 @@ fn brief(value: f64) -> String {
 }
 
 /// A value with as many digits as its uncertainty leaves.
-fn shown(Estimate { value, uncertainty }: Estimate) -> String {
+fn shown(FittedConstant { value, uncertainty }: FittedConstant) -> String {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 15")]
     let digits = (1.0 - uncertainty.log10()).floor().clamp(1.0, 15.0) as usize;
     format!("{value:.digits$} ± {uncertainty:.0e}")

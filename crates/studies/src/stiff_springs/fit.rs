@@ -19,16 +19,16 @@ pub struct Fits {
     pub count: usize,
     /// p of |w_final| = C κ^{−p}.
     #[serde(rename = "exponent_plain")]
-    pub plain_exponent: Estimate,
+    pub plain_exponent: FittedConstant,
     /// p of |w_final| = C κ^{−p} exp(b κ^{−5/4} + c κ^{−5/2}).
-    pub exponent: Estimate,
+    pub exponent: FittedConstant,
     /// C of κ^{5/4}|w_final| = C + b κ^{−5/4} + c κ^{−5/2}.
-    pub constant: Estimate,
+    pub constant: FittedConstant,
     /// b of the same fit.
-    pub correction: Estimate,
+    pub correction: FittedConstant,
     /// q of κ^{5/4}|w_final| = C + b κ^{−q}, from three stiffnesses at a time.
     #[serde(rename = "power_of_correction")]
-    pub power: Estimate,
+    pub power: FittedConstant,
     /// The largest relative difference of |w_final| between values of ψ.
     #[serde(rename = "relative_spread_over_psi")]
     pub spread: f64,
@@ -36,7 +36,7 @@ pub struct Fits {
 
 /// A value with its uncertainty.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Estimate {
+pub struct FittedConstant {
     /// The value.
     pub value: f64,
     /// Its uncertainty.
@@ -94,11 +94,11 @@ fn estimate(
     value: impl Fn((f64, f64)) -> f64,
     terms: &[Term],
     index: usize,
-) -> Option<Estimate> {
+) -> Option<FittedConstant> {
     let all = least_squares(tops, &value, terms, index)?;
     let stiffer = least_squares(&tops[tops.len() / 2..], &value, terms, index);
     let change = stiffer.map_or(0.0, |stiffer| (stiffer.value - all.value).abs());
-    Some(Estimate { uncertainty: all.uncertainty.max(change), ..all })
+    Some(FittedConstant { uncertainty: all.uncertainty.max(change), ..all })
 }
 
 /// Coefficient `index` with its standard error; `None` without more points than terms.
@@ -107,7 +107,7 @@ fn least_squares(
     value: impl Fn((f64, f64)) -> f64,
     terms: &[Term],
     index: usize,
-) -> Option<Estimate> {
+) -> Option<FittedConstant> {
     let freedom = tops.len().checked_sub(terms.len()).filter(|freedom| *freedom > 0)?;
     let matrix = DMatrix::from_fn(tops.len(), terms.len(), |i, j| terms[j](tops[i].0));
     // Columns of very different size are scaled to length 1.
@@ -120,17 +120,17 @@ fn least_squares(
     let rows = factors.v_t?;
     let parts = (0..terms.len()).map(|i| rows[(i, index)] / factors.singular_values[i]);
     let spread: f64 = parts.map(|part| part * part).sum();
-    Some(Estimate {
+    Some(FittedConstant {
         value: solution[index] / sizes[index],
         uncertainty: (variance * spread).sqrt() / sizes[index],
     })
 }
 
 /// The median, and its distance from the farther end of the middle half.
-fn middle(mut values: Vec<f64>) -> Option<Estimate> {
+fn middle(mut values: Vec<f64>) -> Option<FittedConstant> {
     values.retain(|value| value.is_finite());
     values.sort_by(f64::total_cmp);
     let value = *values.get(values.len() / 2)?;
     let [low, high] = [values.len() / 4, values.len() * 3 / 4].map(|i| values[i]);
-    Some(Estimate { value, uncertainty: (value - low).max(high - value) })
+    Some(FittedConstant { value, uncertainty: (value - low).max(high - value) })
 }

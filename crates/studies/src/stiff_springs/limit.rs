@@ -79,7 +79,6 @@ fn envelope_within(kappa: f64, psi: f64, tolerance: f64) -> Result<Crest, StudyE
 ///
 /// The first stick phase starts where v = 1 − ψ. This moment moves by dψ/x^{3/2} with ψ, and half a
 /// swing lasts π/√κ.
-#[must_use]
 pub fn oscillation(kappa: f64, psi: f64) -> f64 {
     PI * (1.25 * psi * (2.0 - psi)).powf(0.6) / kappa.sqrt()
 }

@@ -56,7 +56,6 @@ impl LargestVelocity {
     }
 
     /// κ^{5/4} |w_final| at the top.
-    #[must_use]
     pub fn scaled(&self) -> f64 {
         self.crest.velocity * self.kappa.powf(1.25)
     }
@@ -102,7 +101,6 @@ impl RangeStart {
     pub const ALL: [Self; 3] = [Self::Bound(1.0), Self::Bound(10.0), Self::Psi(0.3)];
 
     /// The start as a formula.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::Bound(1.0) => "1/√κ".to_owned(),
@@ -141,7 +139,6 @@ impl LargestRestitution {
     }
 
     /// The largest |ε_t|; NaN if the range is empty.
-    #[must_use]
     pub fn eps_t(&self) -> f64 {
         self.largest.map_or(f64::NAN, |crest| crest.velocity / crest.psi)
     }

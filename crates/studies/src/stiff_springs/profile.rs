@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use stickslip_model::exact;
 use stickslip_model::limits::inner;
 
+use super::StiffSpringSettings;
 use super::limit::{self, contact};
-use super::settings::Settings;
 use crate::error::StudyError;
 
 /// Stiffnesses at which collisions are compared, if they are within the interval of the study.
@@ -76,7 +76,7 @@ pub struct OtherStart {
 }
 
 impl Profile {
-    pub(super) fn measure(settings: &Settings) -> Result<Self, StudyError> {
+    pub(super) fn measure(settings: &StiffSpringSettings) -> Result<Self, StudyError> {
         // An onset at the end itself is not one; this close to the end F is 1e-13.
         let zero_phase = within(inner::phase(1e-30), 1.0);
         let nearest =

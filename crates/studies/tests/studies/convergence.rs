@@ -8,7 +8,9 @@ use stickslip_model::{Collision, Contact};
 use stickslip_plane::progress::SILENT;
 use stickslip_solver::method::{Order, fit_order};
 use stickslip_solver::{EmbeddedPair, Options, StepSize};
-use stickslip_studies::convergence::{self, Coordinates, Settings, Switching, measure, reference};
+use stickslip_studies::convergence::{
+    self, ConvergenceSettings, Coordinates, Switching, measure, reference,
+};
 
 /// Collisions with two to eight switches, three to seven with damping.
 fn references(damping: f64) -> Vec<Collision> {
@@ -117,9 +119,11 @@ fn steps_over_switches_leave_order_two_of_the_velocity_and_one_of_the_times() {
 
 #[test]
 fn a_study_of_nothing_is_refused() {
-    let error = convergence::run(&Settings { contacts: Vec::new() }, SILENT).unwrap_err();
+    let error =
+        convergence::run(&ConvergenceSettings { contacts: Vec::new() }, SILENT).unwrap_err();
     assert_eq!(error.to_string(), "a study of 0 collisions; expected at least one");
     let stiff = Contact::new(2e6, 1.0, 0.0).unwrap();
-    let error = convergence::run(&Settings { contacts: vec![stiff] }, SILENT).unwrap_err();
+    let error =
+        convergence::run(&ConvergenceSettings { contacts: vec![stiff] }, SILENT).unwrap_err();
     assert!(error.to_string().contains("at most 1000000.0"), "{error}");
 }

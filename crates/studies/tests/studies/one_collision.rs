@@ -4,7 +4,7 @@ use stickslip_model::{Collider, CollisionError, Contact, Damping, Law, Normal};
 use stickslip_solver::{Dopri5, EmbeddedPair, Options, StepSize};
 use stickslip_studies::StudyError;
 use stickslip_studies::convergence::{
-    Coordinates, Settings, Switching, integrate, measure, reference,
+    ConvergenceSettings, Coordinates, Switching, integrate, measure, reference,
 };
 
 const FIXED: Options = Options {
@@ -66,7 +66,7 @@ fn other_laws_are_refused() {
         let found = integrate(EmbeddedPair::Dopri5, contact, coordinates, &located);
         assert!(matches!(found, Err(CollisionError::Law(_))));
     }
-    let settings = Settings { contacts: vec![contact] };
+    let settings = ConvergenceSettings { contacts: vec![contact] };
     assert!(matches!(settings.validate(), Err(StudyError::Law(_))));
 }
 

@@ -1,13 +1,14 @@
 //! What can be wrong with curves and vertices: findings, and errors in the input.
 
+use std::fmt;
+
 use crate::curve::{Curve, Node, Vertex};
 use crate::window::{Point, Window};
 
 /// An inconsistency between curves and vertices, each of which is well formed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Finding<Label> {
     /// A curve does not end at its vertex.
-    #[error("curve {curve} ends {distance:e} away from its vertex {vertex}")]
     EndAway {
         /// The curve.
         curve: usize,
@@ -17,13 +18,11 @@ pub enum Finding<Label> {
         distance: f64,
     },
     /// A vertex is outside the window, or it is inside although its kind places it on the boundary.
-    #[error("vertex {vertex} is outside the window, or not on its boundary as its kind says")]
     VertexOffWindow {
         /// The vertex.
         vertex: usize,
     },
     /// A curve ends inside the window at a vertex where no other curve ends.
-    #[error("curve {curve} ends at vertex {vertex}, where no other curve ends")]
     Dangling {
         /// The curve.
         curve: usize,
@@ -31,7 +30,6 @@ pub enum Finding<Label> {
         vertex: usize,
     },
     /// Two curves, or a curve and the window's boundary (`None`), cross where there is no vertex.
-    #[error("curves {curves:?} cross without a vertex at ({}, {})", point.x, point.y)]
     Crossing {
         /// The curves; twice the same one if a curve crosses itself.
         curves: [Option<usize>; 2],
@@ -39,9 +37,6 @@ pub enum Finding<Label> {
         point: Point,
     },
     /// The curves around a region disagree about its label.
-    #[error(
-        "curves {curves:?} disagree about the label of region {region} (common vertex {vertex:?})"
-    )]
     Labels {
         /// The region.
         region: usize,
@@ -53,7 +48,6 @@ pub enum Finding<Label> {
         vertex: Option<usize>,
     },
     /// A curve has the same region on both sides, or the outside of the window on one side.
-    #[error("curve {curve} does not separate two regions; on its sides are {regions:?}")]
     SidesNotApart {
         /// The curve.
         curve: usize,
@@ -61,7 +55,6 @@ pub enum Finding<Label> {
         regions: [Option<usize>; 2],
     },
     /// No point of a region was found that is farther than the tolerance from the boundary.
-    #[error("region {region} is not wider than the tolerance (clearance {clearance:e})")]
     Thin {
         /// The region.
         region: usize,
@@ -69,8 +62,43 @@ pub enum Finding<Label> {
         clearance: f64,
     },
     /// Euler's formula does not hold.
-    #[error("Euler's formula does not hold: {0:?}")]
     Euler(Euler),
+}
+
+impl<Label> fmt::Display for Finding<Label> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::EndAway { curve, vertex, distance } => {
+                write!(f, "curve {curve} ends {distance:e} away from its vertex {vertex}")
+            }
+            Self::VertexOffWindow { vertex } => write!(
+                f,
+                "vertex {vertex} is outside the window, or not on its boundary as its kind says"
+            ),
+            Self::Dangling { curve, vertex } => {
+                write!(f, "curve {curve} ends at vertex {vertex}, where no other curve ends")
+            }
+            Self::Crossing { curves, point } => {
+                write!(f, "curves {curves:?} cross without a vertex at ({}, {})", point.x, point.y)
+            }
+            Self::Labels { region, curves, vertex, .. } => write!(
+                f,
+                "curves {curves:?} disagree about the label of region {region} (common vertex \
+                 {vertex:?})"
+            ),
+            Self::SidesNotApart { curve, regions } => write!(
+                f,
+                "curve {curve} does not separate two regions; on its sides are {regions:?}"
+            ),
+            Self::Thin { region, clearance } => {
+                write!(
+                    f,
+                    "region {region} is not wider than the tolerance (clearance {clearance:e})"
+                )
+            }
+            Self::Euler(euler) => write!(f, "Euler's formula does not hold: {euler:?}"),
+        }
+    }
 }
 
 /// The counts of Euler's formula for plane graphs, V − E + F = 1 + C.
@@ -99,7 +127,7 @@ impl Euler {
     }
 }
 
-/// Input from which no subdivision can be made.
+/// Input from which no subdivision can be made, or with which none can be verified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SubdivisionError {
     /// The window's corners are not finite, or not in order.
@@ -155,6 +183,24 @@ pub enum SubdivisionError {
         vertex: usize,
         /// The number of vertices.
         count: usize,
+    },
+    /// The distances from curves are not finite, not above 0, or not in order.
+    #[error(
+        "distances from {nearest:e} to {farthest:e}, expected finite values above 0 in ascending order"
+    )]
+    Distances {
+        /// The least distance.
+        nearest: f64,
+        /// The greatest distance.
+        farthest: f64,
+    },
+    /// The numbers of labels and of points differ.
+    #[error("{labels} labels for {points} points, expected one for each")]
+    Labels {
+        /// The number of points.
+        points: usize,
+        /// The number of labels.
+        labels: usize,
     },
 }
 

@@ -8,13 +8,12 @@ mod limit;
 pub mod report;
 
 use crate::family::Family;
+use crate::regions::finding::SubdivisionError;
 use crate::regions::locate::Location;
 use crate::regions::region::Side;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::judge::Judge;
-use crate::regions::verify::report::{
-    Checkpoint, Origin, Reason, Unverified, Verification, VerifyError,
-};
+use crate::regions::verify::report::{Checkpoint, Origin, Reason, Unverified, Verification};
 use crate::window::Point;
 
 /// Where labels are computed, besides the sample point of every region.
@@ -50,7 +49,7 @@ pub fn verify<F: Family>(
     plane: &Subdivision<F::Label, F::Margin>,
     family: &F,
     options: &VerifyOptions,
-) -> Result<Verification<F::Label, F::Error>, VerifyError> {
+) -> Result<Verification<F::Label, F::Error>, SubdivisionError> {
     verify_with(plane, options, |points| points.iter().map(|point| family.label(point)).collect())
 }
 
@@ -64,7 +63,7 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     plane: &Subdivision<Label, Margin>,
     options: &VerifyOptions,
     labels: impl FnOnce(&[Point]) -> Vec<Result<Label, Error>>,
-) -> Result<Verification<Label, Error>, VerifyError> {
+) -> Result<Verification<Label, Error>, SubdivisionError> {
     let found = verify_unless_cancelled(plane, options, |points| Some(labels(points)))?;
     Ok(found.unwrap_or_else(|| Verification::untried(plane)))
 }
@@ -77,10 +76,10 @@ pub fn verify_unless_cancelled<Label: Clone + Ord, Margin, Error>(
     plane: &Subdivision<Label, Margin>,
     options: &VerifyOptions,
     labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, Error>>>,
-) -> Result<Option<Verification<Label, Error>>, VerifyError> {
+) -> Result<Option<Verification<Label, Error>>, SubdivisionError> {
     let VerifyOptions { nearest, farthest, .. } = *options;
     if !(nearest > 0.0 && nearest <= farthest && farthest.is_finite()) {
-        return Err(VerifyError::Distances { nearest, farthest });
+        return Err(SubdivisionError::Distances { nearest, farthest });
     }
     let mut unverified = Vec::new();
     let mut places = Vec::new();
@@ -101,7 +100,7 @@ pub fn verify_unless_cancelled<Label: Clone + Ord, Margin, Error>(
     let points: Vec<Point> = places.iter().map(|(checkpoint, _)| checkpoint.point).collect();
     let Some(labels) = labels(&points) else { return Ok(None) };
     if labels.len() != points.len() {
-        return Err(VerifyError::Labels { points: points.len(), labels: labels.len() });
+        return Err(SubdivisionError::Labels { points: points.len(), labels: labels.len() });
     }
     let mut judge = Judge::new(plane, unverified);
     for ((checkpoint, region), label) in places.into_iter().zip(labels) {

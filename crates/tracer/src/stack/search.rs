@@ -12,26 +12,26 @@
 
 use std::cell::Cell;
 
+use crate::TraceError;
 use crate::executor::Executor;
 use crate::family::Family;
 use crate::lengths::Lengths;
 use crate::lengths::of_stack::{FAR, GAP, NARROW, UNSEEN};
 use crate::regions::region::Region;
+use crate::stack::StackOptions;
 use crate::stack::candidates::candidates;
 use crate::stack::change::{Change, Effect};
 use crate::stack::meeting::{Box3, Meeting, Solved, solve, touching};
 use crate::stack::sample::Sample;
 use crate::stack::structure::Structure;
-use crate::stack::{StackError, StackOptions};
 use crate::survey::Surveyor;
 use crate::watch::{Progress, Watch};
 use crate::window::Window;
-use crate::{AtlasError, TraceError};
 
 /// A change, and the structure behind it.
 type Found<F> = (Change<<F as Family>::Label>, Structure<<F as Family>::Label>);
 
-type Searched<T, F> = Result<T, StackError<<F as Family>::Error>>;
+type Searched<T, F> = Result<T, TraceError<<F as Family>::Error>>;
 
 /// The atlas beside a meeting.
 enum Beside<F: Family> {
@@ -132,13 +132,13 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
     pub fn sample(&mut self, value: f64) -> Searched<Sample<F>, F> {
         self.count += 1;
         let family = (self.family)(value);
-        let at = StackError::at(value);
-        let atlas = self.surveyor.atlas(&family, &self.window).map_err(&at)?;
+        let at = |source| TraceError::Layer { value, source: Box::new(source) };
+        let atlas = self.surveyor.atlas(&family, &self.window).map_err(at)?;
         self.cancelled.set(self.cancelled.get() || !atlas.is_finished());
         let structure = Structure::of(&atlas.plane, &family).map_err(|source| {
             // The error of a run has its place.
             let point = self.window.low;
-            at(AtlasError::Trace(TraceError::Run { point, source }))
+            at(TraceError::Run { point, source })
         })?;
         Ok(Sample { value, atlas, structure })
     }

@@ -40,16 +40,13 @@ pub struct TraceStatistics {
     pub seeds: usize,
 }
 
-/// Something that a trace saw and could not explain.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// Something that a trace saw and could not explain;
+/// [`Names::unresolved`](crate::Names::unresolved) says it in a sentence.
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Unresolved<Label> {
     /// The label changes between two places, but no margin was found that vanishes between them.
-    #[error(
-        "no margin was found for the change between ({}, {}) and ({}, {})",
-        .between[0].x, .between[0].y, .between[1].x, .between[1].y
-    )]
     Change {
         /// The places.
         between: [Point; 2],
@@ -57,13 +54,11 @@ pub enum Unresolved<Label> {
         labels: [Label; 2],
     },
     /// A curve ends at a vertex whose place could not be solved for.
-    #[error("a curve ends at vertex {vertex}, whose place could not be solved for")]
     Stalled {
         /// The index of the vertex.
         vertex: usize,
     },
     /// A curve between two vertices that cannot be distinguished. The curve is left out.
-    #[error("a curve at ({}, {}) has no length", point.x, point.y)]
     NoLength {
         /// The place.
         point: Point,
@@ -71,13 +66,11 @@ pub enum Unresolved<Label> {
         labels: [Label; 2],
     },
     /// A curve has as many nodes as the options allow.
-    #[error("a curve has too many nodes, up to ({}, {})", point.x, point.y)]
     TooManyNodes {
         /// The last node of the curve.
         point: Point,
     },
     /// There are as many curves as the options allow.
-    #[error("there are too many curves, one at ({}, {})", point.x, point.y)]
     TooManyCurves {
         /// A point of a further curve.
         point: Point,

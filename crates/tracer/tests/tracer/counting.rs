@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
-    AtlasError, AtlasOptions, Count, Family, FamilyError, FreeRun, Itinerary, Point, Serial,
-    Surveyor, TraceError, TraceOptions, Tracer, Watch, Window,
+    AtlasOptions, Count, Family, FamilyError, FreeRun, Itinerary, Point, Serial, Surveyor,
+    TraceError, TraceOptions, Tracer, Watch, Window,
 };
 
 use crate::any::any;
@@ -81,8 +81,7 @@ fn a_window_with_too_many_curves_is_refused_before_it_is_traced() {
     let free_runs = &AtomicUsize::new(0);
     let board = any(Chessboard { side: 40.0, power: 1, free_runs });
     let refused = surveyor.atlas(&board, &WINDOW).unwrap_err();
-    let AtlasError::Trace(TraceError::TooManyCurves { regions, curves, most: 500 }) = refused
-    else {
+    let TraceError::TooManyCurves { regions, curves, most: 500 } = refused else {
         panic!("{refused:?}")
     };
     assert!(regions <= 1600 && (501..=3120).contains(&curves), "{regions}, {curves}");

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use rayon::prelude::*;
-use stickslip_practice::tables::Settings;
+use stickslip_practice::tables::TableSettings;
 
 pub struct Bilinear {
     pub sizes: [usize; 2],
@@ -15,7 +15,7 @@ pub struct Bilinear {
 
 impl Bilinear {
     /// The table of `bytes` bytes, with as many points along ψ as along ln κ.
-    pub fn of_size(settings: &Settings, bytes: usize) -> Result<Self, Box<dyn Error>> {
+    pub fn of_size(settings: &TableSettings, bytes: usize) -> Result<Self, Box<dyn Error>> {
         let size = (bytes / 8).isqrt();
         let [kappa, psi] = settings.window.sides();
         let low = [kappa.low.ln(), psi.low];

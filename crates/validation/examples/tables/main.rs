@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use stickslip::model::{Collision, Contact, Engine};
 use stickslip::plane::atlas::{Atlas, Frame, trace};
 use stickslip::plane::progress::SILENT;
-use stickslip_practice::tables::{self, Settings, Table};
+use stickslip_practice::tables::{self, Table, TableSettings};
 
 mod bilinear;
 
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);
     let bound = arguments.next().map_or(Ok(1e-8), |text| text.parse())?;
     let points: usize = arguments.next().map_or(Ok(10_000_000), |text| text.parse())?;
-    let settings = Settings { bound, ..Settings::default() };
+    let settings = TableSettings { bound, ..TableSettings::default() };
     let start = Instant::now();
     let table = tables::run(&settings, SILENT)?;
     println!("made and verified in {:.1} s", start.elapsed().as_secs_f64());
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// A point of the window, even in ln κ and ψ.
-fn at_random(settings: &Settings, random: &mut Rng) -> [f64; 2] {
+fn at_random(settings: &TableSettings, random: &mut Rng) -> [f64; 2] {
     let [kappa, psi] = settings.window.sides();
     let power = random.f64();
     let kappa = (kappa.low * (kappa.high / kappa.low).powf(power)).clamp(kappa.low, kappa.high);

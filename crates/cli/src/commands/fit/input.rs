@@ -1,8 +1,8 @@
 //! The input of a particle code that a fit makes.
 
-use stickslip_practice::fit::{Bodies, Fit, FitError};
+use stickslip_practice::fit::{Fit, FitError, FittedBodies};
 use stickslip_practice::inputs::{self, Code};
-use stickslip_practice::time_steps::{self, Settings};
+use stickslip_practice::time_steps::{self, TimeStepSettings};
 
 use crate::error::Failure;
 use crate::shared::threads::ThreadsArguments;
@@ -14,13 +14,9 @@ const STEPS: [f64; 4] = [20.0, 50.0, 100.0, 200.0];
 
 /// The lines with which `code` computes the contacts of the best fit, with the errors of its time
 /// steps as comments.
-///
-/// # Errors
-/// [`Failure::Usage`]: the code does not have the law, or not with these constants. Others: the
-/// impacts cannot be computed.
 pub fn of(
     fit: &Fit,
-    bodies: &Bodies,
+    bodies: &FittedBodies,
     code: Code,
     threads: ThreadsArguments,
 ) -> Result<String, Failure> {
@@ -29,17 +25,17 @@ pub fn of(
         let reason = "--write needs constants in SI units; expected with --bodies";
         return Err(Failure::Usage(reason.to_owned()));
     };
-    let lines = inputs::lines(code, &pair).map_err(|none| Failure::Usage(none.to_string()))?;
+    let lines = inputs::lines(code, &pair).map_err(Failure::Usage)?;
     let impacts = ANGLES.map(|angle| {
         let (sine, cosine) = angle.to_radians().sin_cos();
         pair.impact(speed * cosine, speed * sine)
     });
     let impacts: Vec<_> = impacts.into_iter().collect::<Result<_, _>>().map_err(FitError::from)?;
     let unit = impacts[0].time_unit_s * time_steps::undamped_contact_time(pair.law);
-    let settings = Settings {
+    let settings = TimeStepSettings {
         contacts: impacts.iter().map(|impact| impact.contact).collect(),
         steps_per_contact: STEPS.to_vec(),
-        ..Settings::default()
+        ..TimeStepSettings::default()
     };
     let errors = threads.with_steps(|report| time_steps::run(&settings, report))??;
     let comment = match code {

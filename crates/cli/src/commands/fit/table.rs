@@ -3,14 +3,13 @@
 use std::io::{self, Write};
 
 use stickslip_model::Tangential;
-use stickslip_practice::fit::{Course, Fit, Free, Interval, Measured, Mindlin, Minimum, Piece};
+use stickslip_practice::fit::{
+    ConfidenceInterval, Fit, FittedCourse, Free, IntervalPiece, Measured, Mindlin, Minimum,
+};
 
 use crate::output::text::{aligned, number, pairs};
 
 /// Writes `fit` as tables.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn write(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
     let of_data = match fit.data {
         1 => "1 datum".to_owned(),
@@ -102,14 +101,14 @@ fn stiffness_name(fit: &Fit) -> &'static str {
 }
 
 /// The pieces of an interval, and of that of the stiffness in SI units.
-fn line(fit: &Fit, interval: &Interval) -> String {
+fn line(fit: &Fit, interval: &ConfidenceInterval) -> String {
     let name = interval.parameter.name();
     let Some(pieces) = &interval.pieces else {
         return format!("{name}: none, since there are no more data than free numbers");
     };
     let ends = |unit: f64| {
-        let piece = |piece: &Piece| {
-            let Piece { low, high, from_end_of_range, to_end_of_range } = piece;
+        let piece = |piece: &IntervalPiece| {
+            let IntervalPiece { low, high, from_end_of_range, to_end_of_range } = piece;
             let end = |is: &bool| if *is { " (end of range)" } else { "" };
             let shown = |value: f64| {
                 if unit == 1.0 { format!("{value:.6}") } else { format!("{:.6e}", value / unit) }
@@ -169,7 +168,7 @@ fn residuals(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
     aligned(out, &header.chain(rows).collect::<Vec<_>>())
 }
 
-fn boundaries(out: &mut dyn Write, course: &Course) -> io::Result<()> {
+fn boundaries(out: &mut dyn Write, course: &FittedCourse) -> io::Result<()> {
     let [low, high] = [course.angles_rad.low, course.angles_rad.high].map(f64::to_degrees);
     writeln!(out, "\nSwitches of the best fit from {low:.3}° to {high:.3}°")?;
     if course.boundaries.is_empty() {

@@ -9,9 +9,6 @@ use stickslip_solver::Statistics;
 use crate::output::text::{aligned, describe, explained, law, number, pairs, work};
 
 /// Writes `impact` as tables.
-///
-/// # Errors
-/// `out` cannot be written.
 pub fn write(
     out: &mut dyn Write,
     engine: &Engine,

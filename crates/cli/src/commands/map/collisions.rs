@@ -96,9 +96,6 @@ fn compute(tiles: &Tiles, pool: &ThreadPool) -> Result<(), Failure> {
 
 /// Writes the map whose results are `stored`, and its picture, completely, except for the names of
 /// the files.
-///
-/// # Errors
-/// A file cannot be written, or a tile cannot be read.
 pub fn finish(
     stored: &impl Stored,
     data: Option<(OutputFile, MapFormat)>,
@@ -126,9 +123,6 @@ pub fn computed(points: usize, failures: &FailureCount, engine: &Engine) -> Stri
 }
 
 /// Tells which of the points in the finished file `out` have no result, and are `shown` so.
-///
-/// # Errors
-/// [`Failure::Points`] names the first of them.
 pub fn require_all(
     failures: &FailureCount,
     stored: &impl Stored,

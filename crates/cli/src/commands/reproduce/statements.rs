@@ -9,9 +9,6 @@ use crate::error::Failure;
 use crate::output::console::print;
 
 /// Tests statements and prints them.
-///
-/// # Errors
-/// A collision cannot be computed, or standard output cannot be written.
 pub fn print_tested(arguments: &ReproduceArguments) -> Result<(), Failure> {
     let ReproduceArguments { statement, model, threads, .. } = arguments;
     let audit = threads.pool()?.install(|| test(*model, statement, SILENT))?;

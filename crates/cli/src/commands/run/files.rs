@@ -18,9 +18,6 @@ const MOST_PANELS: usize = 8;
 const ROWS_AT_ONCE: usize = 10_000;
 
 /// Writes the events with the states on both sides of them, all but the name of the file.
-///
-/// # Errors
-/// [`Failure::File`]: the file cannot be written.
 pub fn write_events(
     path: &Path,
     system: &System,
@@ -50,9 +47,6 @@ pub fn write_events(
 
 /// Writes the state at `points` even times and on both sides of every event, all but the name of
 /// the file.
-///
-/// # Errors
-/// [`Failure::File`]: the file cannot be written.
 pub fn write_course(
     path: &Path,
     points: usize,

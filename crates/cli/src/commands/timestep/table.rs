@@ -3,7 +3,9 @@
 use std::io::{self, Write};
 
 use stickslip_model::Contact;
-use stickslip_practice::time_steps::{Errors, Quantity, Row, Seconds, TimeSteps};
+use stickslip_practice::time_steps::{
+    Seconds, SteppedQuantity, TimeStepErrors, TimeStepRow, TimeSteps,
+};
 
 use crate::output::text::{aligned, pairs};
 
@@ -41,7 +43,7 @@ pub fn write(
              which steps reach slowly"
         )?;
     }
-    for quantity in Quantity::ALL {
+    for quantity in SteppedQuantity::ALL {
         writeln!(out)?;
         let header = [name(quantity), "dt/t_c", "median", "rms", "largest", "κ", "ψ", "status"];
         let rows = result.rows.iter().map(|row| line(result, quantity, row));
@@ -54,18 +56,18 @@ pub fn write(
     wanted.map_or(Ok(()), |wanted| largest(out, wanted, seconds, result))
 }
 
-fn name(quantity: Quantity) -> &'static str {
+fn name(quantity: SteppedQuantity) -> &'static str {
     match quantity {
-        Quantity::TangentialRestitution => "ε_t",
-        Quantity::NormalRestitution => "ε_n",
-        Quantity::Energy => "energy",
+        SteppedQuantity::TangentialRestitution => "ε_t",
+        SteppedQuantity::NormalRestitution => "ε_n",
+        SteppedQuantity::Energy => "energy",
     }
 }
 
 /// A row of a table: the errors, and the impact with the largest.
-fn line(result: &TimeSteps, quantity: Quantity, row: &Row) -> [String; 8] {
+fn line(result: &TimeSteps, quantity: SteppedQuantity, row: &TimeStepRow) -> [String; 8] {
     let errors = row.errors(quantity);
-    let number = |of: fn(Errors) -> f64| {
+    let number = |of: fn(TimeStepErrors) -> f64| {
         errors.map_or_else(|| "none".to_owned(), |errors| format!("{:.2e}", of(errors)))
     };
     let worst = errors.and_then(|errors| result.contacts.get(errors.worst.contact));
@@ -122,7 +124,7 @@ fn largest(
         out,
         "\nLargest dt/t_c of these with errors up to {wanted:?}, as at all shorter ones"
     )?;
-    let lines = Quantity::ALL.map(|quantity| {
+    let lines = SteppedQuantity::ALL.map(|quantity| {
         let step = result.largest_step(quantity, wanted);
         let text = step.map_or_else(
             || "none".to_owned(),

@@ -6,16 +6,13 @@
 //! the largest compression. Two short polynomials therefore give them to rounding, and small
 //! quantities near either end keep their relative accuracy.
 
-mod crest;
 mod meeting;
 mod refined_exit;
-mod refined_onset;
 
 use crate::exact::moment::{At, Half, Moment, Motion, Spring};
 use crate::exact::normal::{ORDER, StickPhase, Trajectory};
 use crate::exact::slip::SlipPhase;
-use crest::crest;
-use meeting::meeting;
+use meeting::{crest, meeting};
 use refined_exit::refined_exit;
 use stickslip_contact::EnergyLedger;
 

@@ -20,7 +20,7 @@ use stickslip_contact::numerics::root::Jet;
 use self::extremes::{Extremes, LARGEST_MAXIMUM};
 use self::nodes::{Grid, MOST_NODES, Nodes, Scale, middle};
 use self::series::{State, Strengths, coefficients};
-use super::roots::{along_root, root_between};
+use super::{along_root, root_between};
 use crate::exact::moment::{At, Half, Moment, Motion, Spring};
 use crate::exact::normal::{ORDER, StickPhase, Trajectory};
 use crate::exact::slip::SlipPhase;

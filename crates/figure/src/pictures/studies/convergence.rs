@@ -37,7 +37,6 @@ const SWITCH_TIME: DrawnError = DrawnError {
 };
 
 /// Draws the pictures of a study: errors against steps, against tolerances, and against work.
-#[must_use]
 pub fn draw(study: &Convergence) -> Vec<Picture> {
     let steps = |error: &DrawnError| {
         let axis = "step, in s (regularised) or scaled time (plain time)";

@@ -9,7 +9,6 @@ use crate::canvas::svg::Svg;
 use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 
 /// Draws the pictures of a study: errors against work, and against tolerances.
-#[must_use]
 pub fn draw(study: &SystemConvergence) -> Vec<Picture> {
     let axis = "tolerance of a step, relative and absolute";
     vec![

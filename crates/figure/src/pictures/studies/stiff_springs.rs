@@ -26,7 +26,6 @@ const SINGLE: Stroke = Stroke::full(SKY, 0.9);
 
 /// Draws the pictures of a study: final velocities and their bounds, the distance from the limit, F
 /// of the inner problem, and numbers of switches.
-#[must_use]
 pub fn draw(study: &StiffSprings) -> Vec<Picture> {
     let picture = Picture::new;
     vec![

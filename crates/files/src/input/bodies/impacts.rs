@@ -71,9 +71,6 @@ const MISTAKEN: [&str; 21] = [
 
 impl ImpactReading {
     /// The bodies in the JSON file at `path`, under a law.
-    ///
-    /// # Errors
-    /// [`FileError::Input`]: the file cannot be read, is not JSON, or has other fields than bodies.
     pub fn of_file(path: &Path, law: Law) -> Result<Self, FileError> {
         super::read(path, |file| {
             file.require_two()?;
@@ -82,17 +79,12 @@ impl ImpactReading {
     }
 
     /// The number of spheres: one beside a wall, otherwise two.
-    #[must_use]
     pub fn spheres(&self) -> usize {
         self.file.spheres()
     }
 
     /// The reading with the columns of `header`, where options give velocities and `results` are
     /// the names of the columns of results.
-    ///
-    /// # Errors
-    /// What is wrong with the columns, or with the file if no column mends it, and what is
-    /// expected.
     pub fn with_columns(
         mut self,
         header: &ByteRecord,

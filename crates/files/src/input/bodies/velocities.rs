@@ -36,9 +36,6 @@ pub enum VelocitiesError {
 impl<T> Velocities<T> {
     /// The form that is given: normal and tangential velocity, or velocity and angle; `None` if
     /// nothing is given.
-    ///
-    /// # Errors
-    /// [`VelocitiesError`]: both forms are given, or half of one.
     pub fn new(given: [Option<T>; 4]) -> Result<Option<Self>, VelocitiesError> {
         match given {
             [None, None, None, None] => Ok(None),
@@ -55,9 +52,6 @@ impl<T> Velocities<T> {
     }
 
     /// The velocities with each value replaced, in the order of [`Self::new`].
-    ///
-    /// # Errors
-    /// That of the first value that cannot be replaced.
     pub fn try_map<U, E>(self, mut map: impl FnMut(T) -> Result<U, E>) -> Result<Velocities<U>, E> {
         Ok(match self {
             Self::Components(normal, tangential) => {
@@ -70,7 +64,6 @@ impl<T> Velocities<T> {
 
 impl Velocities<f64> {
     /// The normal and the tangential velocity in m/s.
-    #[must_use]
     pub fn components(self) -> (f64, f64) {
         match self {
             Self::Components(normal, tangential) => (normal, tangential),

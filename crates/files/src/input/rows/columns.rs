@@ -23,7 +23,6 @@ pub struct Columns {
 
 impl Columns {
     /// The columns of a file of collisions whose results are these.
-    #[must_use]
     pub const fn of_collisions(results: &'static [&'static str]) -> Self {
         Self { parameters: Self::COLLISION, options: true, results }
     }
@@ -45,9 +44,6 @@ impl Columns {
         Self { parameters: &[Parameter::Kappa, Parameter::Psi], options: false, results: &LOCATED };
 
     /// The recipe that the columns of `header` make together with the values `given` as options.
-    ///
-    /// # Errors
-    /// What is wrong with the columns, and what is expected.
     pub fn recipe(&self, header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
         let names = names(header, self.results, "kappa,psi")?;
         let column = |parameter: Parameter| {
@@ -68,9 +64,6 @@ impl Columns {
 
 /// The names of the columns of `header`, without blanks around them. A header may be like
 /// `example`.
-///
-/// # Errors
-/// There is no header, two columns have the same name, or one has the name of one of `results`.
 pub fn names<'a>(
     header: &'a ByteRecord,
     results: &[&str],
@@ -102,9 +95,6 @@ pub struct TwoColumns([usize; 2]);
 
 impl TwoColumns {
     /// The columns with these names.
-    ///
-    /// # Errors
-    /// What is wrong with the columns, and what is expected.
     pub fn named(
         header: &ByteRecord,
         axes: &[String; 2],

@@ -13,10 +13,10 @@ pub const SCHEMA: &str = "stickslip.atlas/1";
 
 /// An atlas in the layout of its file.
 ///
-/// [`Document::new`] makes it from an atlas, `Atlas::try_from` reads it back. All numbers are
+/// [`AtlasDocument::new`] makes it from an atlas, `Atlas::try_from` reads it back. All numbers are
 /// written so that they read back exactly, and the regions are then the same, bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Document {
+pub struct AtlasDocument {
     /// The name of the layout, [`SCHEMA`].
     pub schema: String,
     /// The window.
@@ -115,7 +115,8 @@ pub struct VertexFields {
     /// Index of the vertex in its list.
     pub id: usize,
     /// What happens at the vertex.
-    pub kind: Meeting,
+    #[serde(with = "VertexNames")]
+    pub kind: VertexKind,
     /// κ of the vertex.
     pub kappa: f64,
     /// ψ of the vertex.
@@ -124,21 +125,16 @@ pub struct VertexFields {
     pub boundaries: Vec<usize>,
 }
 
-/// What happens at a vertex: a [`VertexKind`] of the tracer, with the name that it has in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Meeting {
-    /// A boundary meets the edge of the window.
+/// The names of kinds of vertices in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "VertexKind", rename_all = "kebab-case")]
+#[allow(dead_code, reason = "serde reads the names alone")]
+enum VertexNames {
     WindowEdge,
-    /// The vertex is a corner of the window.
     WindowCorner,
-    /// Boundaries cross or touch.
     Crossing,
-    /// The margin that vanishes on the boundary ceases to exist.
     Degenerate,
-    /// A graze reaches the end of contact.
     GrazeAtEnd,
-    /// A switch of one phase and a switch of the next one reach the end of contact together.
     VanishingPhase,
 }
 
@@ -179,32 +175,6 @@ pub struct RegionFields {
     pub area_share: f64,
     /// Indices of the boundaries around the region.
     pub boundaries: Vec<usize>,
-}
-
-impl From<VertexKind> for Meeting {
-    fn from(kind: VertexKind) -> Self {
-        match kind {
-            VertexKind::WindowEdge => Self::WindowEdge,
-            VertexKind::WindowCorner => Self::WindowCorner,
-            VertexKind::Crossing => Self::Crossing,
-            VertexKind::Degenerate => Self::Degenerate,
-            VertexKind::GrazeAtEnd => Self::GrazeAtEnd,
-            VertexKind::VanishingPhase => Self::VanishingPhase,
-        }
-    }
-}
-
-impl From<Meeting> for VertexKind {
-    fn from(meeting: Meeting) -> Self {
-        match meeting {
-            Meeting::WindowEdge => Self::WindowEdge,
-            Meeting::WindowCorner => Self::WindowCorner,
-            Meeting::Crossing => Self::Crossing,
-            Meeting::Degenerate => Self::Degenerate,
-            Meeting::GrazeAtEnd => Self::GrazeAtEnd,
-            Meeting::VanishingPhase => Self::VanishingPhase,
-        }
-    }
 }
 
 /// Turns left and right of a curve into below and above, or the reverse, at its middle node.

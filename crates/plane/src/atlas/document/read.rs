@@ -3,37 +3,37 @@
 use stickslip_model::Contact;
 use stickslip_tracer::{Curve, Extremum, Finding, Location, Node, Point, Subdivision, Vertex};
 
-use super::error::DocumentError;
+use super::error::AtlasDocumentError;
 use super::layout::{
-    BoundaryFields, Document, ExtremalParameter, ExtremumFields, RegionFields, SCHEMA, Switching,
-    VertexFields, WindowFields, in_order,
+    AtlasDocument, BoundaryFields, ExtremalParameter, ExtremumFields, RegionFields, SCHEMA,
+    Switching, VertexFields, WindowFields, in_order,
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, Regions, switch_count};
 use crate::chart::Chart;
+use crate::chart::Range;
 use crate::family::CollisionPlane;
-use crate::range::Range;
 
-impl TryFrom<Document> for Atlas {
-    type Error = DocumentError;
+impl TryFrom<AtlasDocument> for Atlas {
+    type Error = AtlasDocumentError;
 
     /// Reads an atlas back. The regions are made from the boundaries, as when the atlas was traced.
     /// The impact ratios of the window are not kept.
     ///
     /// # Errors
-    /// [`DocumentError`]: the document contradicts itself, or its verification found something that
-    /// speaks against it.
-    fn try_from(document: Document) -> Result<Self, DocumentError> {
+    /// [`AtlasDocumentError`]: the document contradicts itself, or its verification found something
+    /// that speaks against it.
+    fn try_from(document: AtlasDocument) -> Result<Self, AtlasDocumentError> {
         if document.schema != SCHEMA {
-            return Err(DocumentError::Schema { found: document.schema });
+            return Err(AtlasDocumentError::Schema { found: document.schema });
         }
         if let Some(objection) = document.verification.objection() {
-            return Err(DocumentError::Doubtful { objection });
+            return Err(AtlasDocumentError::Doubtful { objection });
         }
         let (frame, tolerance) = (frame(&document.window)?, document.tolerance);
         if !(tolerance > 0.0 && tolerance <= 1e-6) {
-            return Err(DocumentError::Tolerance { tolerance });
+            return Err(AtlasDocumentError::Tolerance { tolerance });
         }
         let chart = document.chart.unwrap_or(Chart::PLAIN);
         let plane = frame.plane()?.with_chart(chart);
@@ -51,7 +51,7 @@ impl TryFrom<Document> for Atlas {
         // Thin regions were found there by collisions, or there would be an objection above.
         let is_thin = |finding: &&Finding<_>| matches!(finding, Finding::Thin { .. });
         if let Some(finding) = regions.findings().iter().find(|finding| !is_thin(finding)) {
-            return Err(DocumentError::Finding(finding.clone()));
+            return Err(AtlasDocumentError::Finding(finding.clone()));
         }
         require_regions(&chart, &regions, &document.regions)?;
         if let Some(whole) = document.regions.first() {
@@ -64,15 +64,15 @@ impl TryFrom<Document> for Atlas {
 }
 
 /// The window; impact ratios are not read.
-fn frame(window: &WindowFields) -> Result<Frame, DocumentError> {
+fn frame(window: &WindowFields) -> Result<Frame, AtlasDocumentError> {
     let range = |name, [low, high]: [f64; 2]| {
         if low > 0.0 && low < high && high.is_finite() {
             return Ok(Range { low, high });
         }
-        Err(DocumentError::Window { name, low, high })
+        Err(AtlasDocumentError::Window { name, low, high })
     };
     if !(0.0..f64::INFINITY).contains(&window.damping) {
-        return Err(DocumentError::Damping { damping: window.damping });
+        return Err(AtlasDocumentError::Damping { damping: window.damping });
     }
     let (kappa, psi) = (range("kappa", window.kappa)?, range("psi", window.psi)?);
     let law = window.law.unwrap_or_default();
@@ -83,7 +83,7 @@ fn frame(window: &WindowFields) -> Result<Frame, DocumentError> {
 }
 
 /// Refuses a chart that does not map the window onto an area.
-fn require_chart(plane: &CollisionPlane) -> Result<(), DocumentError> {
+fn require_chart(plane: &CollisionPlane) -> Result<(), AtlasDocumentError> {
     let (window, chart) = (plane.window(), plane.chart());
     let extent = window.extent();
     let corners = [window.low, window.high];
@@ -92,7 +92,7 @@ fn require_chart(plane: &CollisionPlane) -> Result<(), DocumentError> {
     if finite && extent.min() > 0.0 && numbers.iter().all(|&number| number > 0.0) {
         return Ok(());
     }
-    Err(DocumentError::Chart(*chart))
+    Err(AtlasDocumentError::Chart(*chart))
 }
 
 /// The curve of a boundary in traced coordinates.
@@ -100,12 +100,12 @@ fn curve(
     chart: &Chart,
     index: usize,
     boundary: &BoundaryFields,
-) -> Result<Curve<String, BoundaryKind>, DocumentError> {
+) -> Result<Curve<String, BoundaryKind>, AtlasDocumentError> {
     require_id("boundaries", index, boundary.id)?;
     let (points, tangents) = (&boundary.points, &boundary.tangents);
     if points.len() < 2 || points.len() != tangents.len() {
         let (points, tangents) = (points.len(), tangents.len());
-        return Err(DocumentError::Tangents { boundary: index, points, tangents });
+        return Err(AtlasDocumentError::Tangents { boundary: index, points, tangents });
     }
     let mut nodes = Vec::with_capacity(points.len());
     for (place, (point, tangent)) in points.iter().zip(tangents).enumerate() {
@@ -123,10 +123,10 @@ fn vertex(
     chart: &Chart,
     index: usize,
     vertex: &VertexFields,
-) -> Result<Vertex<BoundaryKind>, DocumentError> {
+) -> Result<Vertex<BoundaryKind>, AtlasDocumentError> {
     require_id("vertices", index, vertex.id)?;
     let point = positive(chart, [vertex.kappa, vertex.psi], || format!("vertices[{index}]"))?;
-    Ok(Vertex { point, kind: vertex.kind.into(), margins: Vec::new() })
+    Ok(Vertex { point, kind: vertex.kind, margins: Vec::new() })
 }
 
 /// The point at which a boundary turns back, in traced coordinates.
@@ -144,10 +144,10 @@ fn require_regions(
     chart: &Chart,
     regions: &Regions,
     listed: &[RegionFields],
-) -> Result<(), DocumentError> {
+) -> Result<(), AtlasDocumentError> {
     if listed.len() != regions.regions().len() {
         let (listed, made) = (listed.len(), regions.regions().len());
-        return Err(DocumentError::Regions { listed, made });
+        return Err(AtlasDocumentError::Regions { listed, made });
     }
     for (index, region) in listed.iter().enumerate() {
         require_id("regions", index, region.id)?;
@@ -164,14 +164,14 @@ fn require_regions(
             Location::Outside => false,
         };
         if !fits || !is_there {
-            return Err(DocumentError::Region { region: index });
+            return Err(AtlasDocumentError::Region { region: index });
         }
     }
     Ok(())
 }
 
 /// The itinerary, if it is one and has as many switches as the count says.
-fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, DocumentError> {
+fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, AtlasDocumentError> {
     let Switching { switch_count: count, itinerary } = switching;
     let phases = itinerary.as_bytes();
     let known = !phases.is_empty() && phases.iter().all(|phase| b"+o-".contains(phase));
@@ -179,7 +179,7 @@ fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, D
     if known && alternating && switch_count(&itinerary) == count {
         return Ok(itinerary);
     }
-    Err(DocumentError::Switching { place: place(), switch_count: count, itinerary })
+    Err(AtlasDocumentError::Switching { place: place(), switch_count: count, itinerary })
 }
 
 /// A point (κ, ψ) in traced coordinates.
@@ -187,17 +187,17 @@ fn positive(
     chart: &Chart,
     [kappa, psi]: [f64; 2],
     place: impl Fn() -> String,
-) -> Result<Point, DocumentError> {
+) -> Result<Point, AtlasDocumentError> {
     if kappa > 0.0 && psi > 0.0 {
         return Ok(chart.point(kappa, psi));
     }
-    Err(DocumentError::Point { place: place(), kappa, psi })
+    Err(AtlasDocumentError::Point { place: place(), kappa, psi })
 }
 
 /// Refuses an entry whose `id` is not its index.
-fn require_id(list: &'static str, index: usize, id: usize) -> Result<(), DocumentError> {
+fn require_id(list: &'static str, index: usize, id: usize) -> Result<(), AtlasDocumentError> {
     if id == index {
         return Ok(());
     }
-    Err(DocumentError::Id { list, index, id })
+    Err(AtlasDocumentError::Id { list, index, id })
 }

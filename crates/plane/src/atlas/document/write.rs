@@ -4,17 +4,16 @@ use stickslip_model::Law;
 use stickslip_tracer::{Curve, Extremum, Node};
 
 use super::layout::{
-    BoundaryEnd, BoundaryFields, Document, ExtremalParameter, ExtremumFields, Meeting,
-    RegionFields, SCHEMA, Switching, VertexFields, WindowFields, in_order,
+    AtlasDocument, BoundaryEnd, BoundaryFields, ExtremalParameter, ExtremumFields, RegionFields,
+    SCHEMA, Switching, VertexFields, WindowFields, in_order,
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, switch_count};
 use crate::chart::Chart;
 
-impl Document {
+impl AtlasDocument {
     /// The document of an atlas of κ and ψ.
-    #[must_use]
     pub fn new(atlas: &Atlas) -> Self {
         let Atlas { plane, tolerance, regions, extrema, report, .. } = atlas;
         let chart = plane.chart();
@@ -54,10 +53,10 @@ impl WindowFields {
 impl BoundaryFields {
     fn new(atlas: &Atlas, id: usize, curve: &Curve<String, BoundaryKind>) -> Self {
         let [below, above] = in_order(&curve.nodes, curve.sides.each_ref());
-        let kind = |vertex: usize| Meeting::from(atlas.regions.vertices()[vertex].kind);
-        let place = |end: usize| match curve.ends.map(|ends| kind(ends[end])) {
+        let vertices = atlas.regions.vertices();
+        let place = |end: usize| match curve.ends.map(|ends| vertices[ends[end]].kind) {
             None => BoundaryEnd::Closed,
-            Some(Meeting::WindowEdge | Meeting::WindowCorner) => BoundaryEnd::Window,
+            Some(kind) if kind.is_on_window() => BoundaryEnd::Window,
             Some(_) => BoundaryEnd::Vertex,
         };
         let point = |node: &Node| atlas.plane.sheet().snapped(&node.point);
@@ -90,7 +89,7 @@ fn vertices(atlas: &Atlas) -> Vec<VertexFields> {
     vertices
         .map(|(id, (vertex, boundaries))| {
             let [kappa, psi] = plane.sheet().snapped(&vertex.point);
-            VertexFields { id, kind: vertex.kind.into(), kappa, psi, boundaries }
+            VertexFields { id, kind: vertex.kind, kappa, psi, boundaries }
         })
         .collect()
 }

@@ -141,26 +141,3 @@ impl<Label, Error> Verification<Label, Error> {
         self.findings == 0 && self.euler.holds() && self.mismatches.is_empty()
     }
 }
-
-/// Why a subdivision cannot be verified.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum VerifyError {
-    /// The distances from curves are not finite, not above 0, or not in order.
-    #[error(
-        "distances from {nearest:e} to {farthest:e}, expected finite values above 0 in ascending order"
-    )]
-    Distances {
-        /// The least distance.
-        nearest: f64,
-        /// The greatest distance.
-        farthest: f64,
-    },
-    /// The numbers of labels and of points differ.
-    #[error("{labels} labels for {points} points, expected one for each")]
-    Labels {
-        /// The number of points.
-        points: usize,
-        /// The number of labels.
-        labels: usize,
-    },
-}

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use stickslip_tracer::{
-    Curve, Finding, Node, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError,
-    VerifyOptions, Vertex, VertexKind, verify,
+    Curve, Finding, Node, Origin, Point, Side, Subdivision, SubdivisionError, VerifyOptions,
+    Vertex, VertexKind, verify,
 };
 
 use crate::subdivision::planes::{
@@ -282,7 +282,7 @@ fn input_without_meaning_is_refused_by_name() {
     let made = crossing_circles().subdivision().expect("curves with a meaning");
     let options = VerifyOptions { nearest: 1.0, farthest: 0.5, ..VerifyOptions::default() };
     let error = verify(&made, &crossing_circles(), &options).expect_err("out of order");
-    assert_eq!(error, VerifyError::Distances { nearest: 1.0, farthest: 0.5 });
+    assert_eq!(error, SubdivisionError::Distances { nearest: 1.0, farthest: 0.5 });
     let vertex: Vertex<usize> = made.vertices()[0].clone();
     assert!(vertex.margins.is_empty() && made.tolerance() == TOLERANCE);
 }

@@ -1,6 +1,7 @@
 //! The end of a stick phase beside a graze, without the errors of rounding in its guard.
 //!
-//! As in `refined_onset`, one Newton step with the guard in [`DoubleDouble`] numbers removes them.
+//! As at the end of a slip phase (`meeting`), one Newton step with the guard in [`DoubleDouble`]
+//! numbers removes them.
 
 use stickslip_contact::numerics::double_double::DoubleDouble;
 
