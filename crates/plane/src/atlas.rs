@@ -5,7 +5,7 @@
 //! reading order:
 //!
 //! - `frame`: the window of an atlas
-//! - `boundary`: what the tracer's guards and margins mean for a collision
+//! - `boundary`: what the tracer's margins mean for a collision
 //! - `regions`: the atlas itself
 //! - `tracing` and `draft`: how an atlas is made, and `error`: why there is none
 //! - `verification`: what the comparison with collisions found
@@ -27,10 +27,10 @@ mod regions;
 mod tracing;
 mod verification;
 
+pub(crate) use crate::family::general::itinerary;
 pub use crate::sheet::{ToleranceRange, TooNarrow};
 pub use angles::ObliqueBoundaries;
 pub use boundary::BoundaryKind;
-pub(crate) use boundary::itinerary;
 #[cfg(feature = "serde")]
 pub use document::{
     AtlasDocument, AtlasDocumentError, BoundaryEnd, BoundaryFields, ExtremalParameter,

@@ -53,8 +53,7 @@ pub mod sheet;
 pub mod stack;
 pub mod sweep;
 
-pub use chart::Chart;
-pub use chart::Range;
+pub use chart::{Chart, Range};
 pub use family::{CollisionFamily, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
 pub use label::{CollisionEvent, CollisionLabel};

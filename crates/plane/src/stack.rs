@@ -230,7 +230,10 @@ impl DampingStack {
             let kind = meeting.kind.name();
             json!({ "kind": kind, "damping": meeting.value, "kappa": kappa, "psi": psi })
         };
-        let effect = |effect: &Effect<String>| json!({ "effect": effect.name(), "itinerary": effect.label() });
+        let effect = |effect: &Effect<String>| {
+            let (name, itinerary) = (effect.name(), effect.label());
+            json!({ "effect": name, "itinerary": itinerary })
+        };
         let change = |change: &Change<String>| {
             json!({
                 "between": change.between,

@@ -6,8 +6,7 @@ use stickslip_model::Engine;
 use stickslip_tracer::{Location, Point, Window};
 
 use super::regions::Atlas;
-use crate::chart::Chart;
-use crate::chart::Range;
+use crate::chart::{Chart, Range};
 
 /// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,8 +11,7 @@ use super::layout::{
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, Regions, switch_count};
-use crate::chart::Chart;
-use crate::chart::Range;
+use crate::chart::{Chart, Range};
 use crate::family::CollisionPlane;
 
 impl TryFrom<AtlasDocument> for Atlas {
