@@ -5,7 +5,7 @@ use std::fmt;
 use stickslip_model::Engine;
 use stickslip_tracer::{Location, Point, Window};
 
-use super::regions::Atlas;
+use super::regions::CollisionAtlas;
 use crate::chart::{Chart, Range};
 
 /// The place of a collision in an atlas.
@@ -72,7 +72,7 @@ impl fmt::Display for ParameterPlace {
     }
 }
 
-impl Atlas {
+impl CollisionAtlas {
     /// Looks up a collision by its two parameters: κ and ψ, or the velocities. Within the error of
     /// a boundary, the collision itself decides, computed by the best engine for it.
     pub fn locate(&self, parameters: [f64; 2]) -> Located {
