@@ -12,9 +12,7 @@ pub mod quantity;
 pub(crate) mod report;
 pub mod scaling;
 
-pub use bodies::Reduction;
-pub use bodies::Surface;
-pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
+pub use bodies::{Body, Elasticity, Material, Reduction, Sphere, Surface, Wall};
 pub use encounter::{Encounter, Motion, WallMotion};
 pub use forces::{Constants, Forces};
 pub use moment::ForceSnapshot;

@@ -1,11 +1,11 @@
 //! Atlases: every boundary in a window on which the switches of a collision change, and the regions
 //! between them.
 //!
-//! Start reading in [`trace()`](fn@trace), which makes an [`Atlas`] and verifies it. The files in
-//! reading order:
+//! Start reading in [`trace()`](fn@trace), which makes a [`CollisionAtlas`] and verifies it. The
+//! files in reading order:
 //!
 //! - `frame`: the window of an atlas
-//! - `boundary`: what the tracer's guards and margins mean for a collision
+//! - `boundary`: what the tracer's margins mean for a collision
 //! - `regions`: the atlas itself
 //! - `tracing` and `draft`: how an atlas is made, and `error`: why there is none
 //! - `verification`: what the comparison with collisions found
@@ -27,10 +27,10 @@ mod regions;
 mod tracing;
 mod verification;
 
+pub(crate) use crate::family::general::itinerary;
 pub use crate::sheet::{ToleranceRange, TooNarrow};
 pub use angles::ObliqueBoundaries;
 pub use boundary::BoundaryKind;
-pub(crate) use boundary::itinerary;
 #[cfg(feature = "serde")]
 pub use document::{
     AtlasDocument, AtlasDocumentError, BoundaryEnd, BoundaryFields, ExtremalParameter,
@@ -42,7 +42,7 @@ pub use frame::{Frame, RatioRange};
 pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, ParameterPlace, Unlocated};
 pub(crate) use regions::polyline;
-pub use regions::{Atlas, Regions, switch_count};
+pub use regions::{CollisionAtlas, Regions, switch_count};
 pub use tracing::{divide, trace};
 pub(crate) use tracing::{require_traceable, trace_options};
 pub use verification::{EulerFields, MismatchFields, VerificationReport};

@@ -16,8 +16,7 @@ pub(crate) mod general;
 pub use gaining::GainingFamily;
 pub use general::GeneralFamily;
 
-use crate::chart::Chart;
-use crate::chart::Range;
+use crate::chart::{Chart, Range};
 use crate::label::{CollisionEvent, CollisionLabel};
 use crate::oblique::Oblique;
 use crate::sheet::Sheet;

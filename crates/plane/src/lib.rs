@@ -5,8 +5,8 @@
 //!
 //! - A [`CollisionPlane`] is the family of collisions over (κ, ψ) that the tracer can follow.
 //! - A [`Grid`] is a window divided into cells, whose collisions [`sweep`] computes.
-//! - An [`Atlas`](atlas::Atlas) holds every boundary on which the switches change, and the regions
-//!   between the boundaries.
+//! - A [`CollisionAtlas`](atlas::CollisionAtlas) holds every boundary on which the switches change,
+//!   and the regions between the boundaries.
 //!
 //! Start reading in [`family`]. The modules in reading order:
 //!
@@ -53,8 +53,7 @@ pub mod sheet;
 pub mod stack;
 pub mod sweep;
 
-pub use chart::Chart;
-pub use chart::Range;
+pub use chart::{Chart, Range};
 pub use family::{CollisionFamily, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
 pub use label::{CollisionEvent, CollisionLabel};

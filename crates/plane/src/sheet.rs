@@ -2,8 +2,7 @@
 
 use stickslip_tracer::{Node, Point, Window};
 
-use crate::chart::Chart;
-use crate::chart::Range;
+use crate::chart::{Chart, Range};
 
 /// A window of two parameters above 0, and its chart.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,7 +10,7 @@ use stickslip_tracer::{AtlasOptions, Change, Stack, StackOptions, TraceError, Wa
 #[cfg(feature = "serde")]
 use stickslip_tracer::{Effect, Meeting};
 
-use crate::atlas::{self, Atlas, AtlasError, Frame, itinerary};
+use crate::atlas::{self, AtlasError, CollisionAtlas, Frame, itinerary};
 use crate::family::CollisionPlane;
 use crate::label::CollisionLabel;
 use crate::progress::{InParallel, Progress, Report, SILENT};
@@ -39,7 +39,7 @@ pub struct DampingLayer {
     /// The damping.
     pub damping: f64,
     /// The atlas, verified by integration.
-    pub atlas: Atlas,
+    pub atlas: CollisionAtlas,
     /// Whether its regions are those that the changes leave; `None` without damping, and inside the
     /// bracket of a change.
     pub as_stacked: Option<bool>,
@@ -168,7 +168,7 @@ fn follow(
 }
 
 /// The itineraries of all regions of an atlas, in order.
-fn itineraries(atlas: &Atlas) -> Vec<String> {
+fn itineraries(atlas: &CollisionAtlas) -> Vec<String> {
     let regions = 0..atlas.regions.regions().len();
     let mut all: Vec<String> = regions.map(|region| atlas.itinerary(region).to_owned()).collect();
     all.sort();
@@ -230,7 +230,10 @@ impl DampingStack {
             let kind = meeting.kind.name();
             json!({ "kind": kind, "damping": meeting.value, "kappa": kappa, "psi": psi })
         };
-        let effect = |effect: &Effect<String>| json!({ "effect": effect.name(), "itinerary": effect.label() });
+        let effect = |effect: &Effect<String>| {
+            let (name, itinerary) = (effect.name(), effect.label());
+            json!({ "effect": name, "itinerary": itinerary })
+        };
         let change = |change: &Change<String>| {
             json!({
                 "between": change.between,

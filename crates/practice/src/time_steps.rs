@@ -30,8 +30,7 @@ use stickslip_plane::progress::{Progress, Report};
 pub use measure::{Status, SteppedQuantity, TimeStepErrors, TimeStepRow, Worst};
 pub use seconds::{Seconds, rayleigh_time_s};
 pub use settings::TimeStepSettings;
-pub use stepped::Scheme;
-pub use stepped::{Stepped, step, undamped_contact_time};
+pub use stepped::{Scheme, Stepped, step, undamped_contact_time};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.timestep/1";

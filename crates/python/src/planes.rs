@@ -19,7 +19,7 @@ use crate::parallel::Threads;
 /// The boundaries and regions of a window, with their document.
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct Atlas {
-    atlas: atlas::Atlas,
+    atlas: atlas::CollisionAtlas,
     document: AtlasDocument,
 }
 

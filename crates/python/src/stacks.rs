@@ -9,7 +9,7 @@ use stickslip_plane::sealed;
 use stickslip_plane::stack::stack as stacked;
 
 use crate::background::watched;
-use crate::failure::{bad_input, failed, of_atlas};
+use crate::failure::{failed, of_atlas};
 
 /// The stack of a window as JSON, its picture as SVG, and what speaks against it.
 #[pyfunction]

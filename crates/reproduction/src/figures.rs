@@ -19,7 +19,6 @@ mod section;
 mod stiffness_map;
 mod sweep;
 
-pub use reproduction::Part;
-pub use reproduction::Reproduction;
+pub use reproduction::{Part, Reproduction};
 pub use section::{Content, DataFile, Section, headlines};
 pub use sweep::Sweep;

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use stickslip::model::{Collider, Damping, presets};
-use stickslip::plane::atlas::{self, Atlas, Frame};
+use stickslip::plane::atlas::{self, CollisionAtlas, Frame};
 use stickslip::plane::progress::SILENT;
 use stickslip::plane::{CollisionPlane, Range};
 
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Whether the atlas is right at a random point; `None` where it names no region.
-fn checked(atlas: &Atlas, plane: &CollisionPlane, seed: u64) -> Option<bool> {
+fn checked(atlas: &CollisionAtlas, plane: &CollisionPlane, seed: u64) -> Option<bool> {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut value = |Range { low, high }: Range| low * (high / low).powf(random.f64());
     let contact = plane.contact(&plane.point(value(KAPPA), value(PSI))).ok()?;

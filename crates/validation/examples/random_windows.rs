@@ -109,7 +109,7 @@ fn law(random: &mut fastrand::Rng) -> Law {
 }
 
 /// The points whose region has other switches than their collisions.
-fn wrong(atlas: &atlas::Atlas, random: &mut fastrand::Rng, count: u64) -> Vec<[f64; 2]> {
+fn wrong(atlas: &atlas::CollisionAtlas, random: &mut fastrand::Rng, count: u64) -> Vec<[f64; 2]> {
     let [kappa, psi] = atlas.plane.sheet().sides;
     let plane = atlas.plane;
     let even = |Range { low, high }: Range, part: f64| low + part * (high - low);

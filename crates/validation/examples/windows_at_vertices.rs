@@ -59,7 +59,7 @@ fn range(at: f64, [below, above]: [f64; 2]) -> Range {
     Range { low: at * (1.0 - below), high: at * (1.0 + above) }
 }
 
-fn traced(frame: Frame) -> Result<atlas::Atlas, atlas::AtlasError> {
+fn traced(frame: Frame) -> Result<atlas::CollisionAtlas, atlas::AtlasError> {
     atlas::trace(frame, frame.tolerances().usual, SILENT)
 }
 

@@ -10,7 +10,7 @@ use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{self, Atlas, AtlasDocument, Frame, geojson};
+use stickslip_plane::atlas::{self, AtlasDocument, CollisionAtlas, Frame, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{Surveyor, Watch};
@@ -140,7 +140,7 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
 }
 
 /// What was found, in a sentence.
-fn found(Atlas { regions, report, .. }: &Atlas) -> String {
+fn found(CollisionAtlas { regions, report, .. }: &CollisionAtlas) -> String {
     let all = boundaries_and_regions(regions.curves().len(), regions.regions().len());
     let points = report.tried;
     let verified = if report.agrees { "verified" } else { "not all confirmed" };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::TypedValueParser;
-use stickslip_files::output::csv::{CsvFile, Rows};
+use stickslip_files::output::csv::CsvFile;
 use stickslip_files::output::file::StoredFile;
 use stickslip_model::history::{History, Moment, Snapshot};
 use stickslip_model::spheres::{Encounter, ForceSnapshot};
@@ -39,9 +39,6 @@ const IN_SI: [&str; 10] = [
     "velocity_m_per_s",
     "spring_m",
 ];
-
-/// Rows are written when they are so many.
-const ROWS_AT_ONCE: usize = 10_000;
 
 /// Where the course is written, and how dense it is.
 #[derive(Clone, Debug, clap::Args)]
@@ -138,11 +135,11 @@ impl Course<'_> {
         numbers: impl Fn(&Snapshot) -> (f64, [f64; 5], Option<f64>),
     ) -> Result<StoredFile, Failure> {
         let mut file = CsvFile::create(self.path)?;
-        let mut rows = Rows::default();
-        rows.fields(header);
-        rows.end();
-        for (index, Moment { snapshot, regime, side, switch }) in moments.enumerate() {
+        file.rows.fields(header);
+        file.end()?;
+        for Moment { snapshot, regime, side, switch } in moments {
             let (time, others, spring) = numbers(&snapshot);
+            let rows = &mut file.rows;
             rows.number(time);
             rows.field(regime.name());
             rows.field(side_name(side));
@@ -157,13 +154,8 @@ impl Course<'_> {
                 Some(spring) => rows.number(spring),
                 None => rows.field(""),
             }
-            rows.end();
-            if index % ROWS_AT_ONCE == 0 {
-                file.write(&rows)?;
-                rows.clear();
-            }
+            file.end()?;
         }
-        file.write(&rows)?;
         Ok(file.store()?)
     }
 }

@@ -5,7 +5,7 @@
 mod closed_forms;
 
 use stickslip_model::text::number;
-use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
+use stickslip_plane::atlas::{BoundaryKind, CollisionAtlas, switch_count};
 use stickslip_tracer::{Location, Point};
 
 use closed_forms::ClosedForms;
@@ -30,7 +30,7 @@ const KEY: f64 = 28.0;
 /// Draws `atlas`.
 ///
 /// The legend names the kinds of boundaries, vertices and limits that are in the picture.
-pub fn draw(atlas: &Atlas) -> Svg {
+pub fn draw(atlas: &CollisionAtlas) -> Svg {
     let title = title(atlas);
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
     svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
@@ -83,14 +83,14 @@ pub fn draw(atlas: &Atlas) -> Svg {
 
 /// The boundaries with points (κ, ψ), which are so close that straight lines between them look
 /// smooth.
-pub fn boundaries(atlas: &Atlas) -> Vec<(BoundaryKind, Vec<(f64, f64)>)> {
+pub fn boundaries(atlas: &CollisionAtlas) -> Vec<(BoundaryKind, Vec<(f64, f64)>)> {
     let curves = atlas.regions.curves().iter();
     let points = |line: Vec<[f64; 2]>| line.into_iter().map(Into::into).collect();
     curves.zip(atlas.polylines()).map(|(curve, line)| (curve.margin, points(line))).collect()
 }
 
 /// The size of an atlas, and the parameters that all its collisions have in common.
-fn title(atlas: &Atlas) -> String {
+fn title(atlas: &CollisionAtlas) -> String {
     let boundaries = match atlas.regions.curves().len() {
         1 => "1 boundary".to_owned(),
         count => format!("{count} boundaries"),
@@ -115,7 +115,7 @@ fn title(atlas: &Atlas) -> String {
 }
 
 /// Draws the vertices inside the window, and adds their marks to the legend.
-fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
+fn vertices(svg: &mut Svg, atlas: &CollisionAtlas, panel: &Panel, legend: &mut Legend) {
     let places = atlas.regions.vertices().iter();
     let places = places
         .map(|vertex| (vertex.kind, panel.place(atlas.plane.parameters(&vertex.point).into())));
@@ -123,7 +123,7 @@ fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
 }
 
 /// Writes the number of switches into each region, or beside it.
-fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
+fn labels(svg: &mut Svg, atlas: &CollisionAtlas, panel: &Panel) {
     let region = |(kappa, psi)| match atlas.regions.locate(&atlas.plane.point(kappa, psi)) {
         Location::Region(region) => Some(region),
         _ => None,

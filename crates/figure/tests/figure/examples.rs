@@ -12,7 +12,7 @@ use stickslip_figure::pictures::map::{MapAxis, MapPanel, Values};
 use stickslip_figure::pictures::{self, atlas, chart, collision, gallery, grid, map};
 use stickslip_model::history::History;
 use stickslip_model::{Collider, Collision, Contact, Engine};
-use stickslip_plane::atlas::{Atlas, Frame, trace};
+use stickslip_plane::atlas::{CollisionAtlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range, sweep};
 use stickslip_practice::time_steps;
@@ -75,7 +75,7 @@ pub fn restitution(largest: f64) -> Svg {
 }
 
 /// The atlas of a window.
-pub fn traced(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Atlas {
+pub fn traced(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> CollisionAtlas {
     let range = |(low, high)| Range { low, high };
     let frame = Frame::new(range(kappa), range(psi), damping);
     trace(frame, frame.tolerances().usual, SILENT).unwrap()
@@ -85,13 +85,13 @@ pub fn traced(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Atlas {
 #[derive(Debug)]
 pub struct Atlases {
     /// All kinds of boundaries and vertices.
-    pub large: Atlas,
+    pub large: CollisionAtlas,
     /// Two boundaries that cross.
-    pub crossing: Atlas,
+    pub crossing: CollisionAtlas,
     /// A window with damping.
-    pub damped: Atlas,
+    pub damped: CollisionAtlas,
     /// A window without a boundary.
-    pub empty: Atlas,
+    pub empty: CollisionAtlas,
 }
 
 /// The atlases, each traced once.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Deserialize;
-use stickslip_plane::atlas::{Atlas, AtlasDocument, SCHEMA};
+use stickslip_plane::atlas::{AtlasDocument, CollisionAtlas, SCHEMA};
 use stickslip_plane::sealed;
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Itinerary, RunNames};
@@ -24,7 +24,7 @@ struct Schema {
 #[derive(Debug)]
 pub enum AnyAtlas {
     /// Of collisions.
-    Collisions(Box<Atlas>),
+    Collisions(Box<CollisionAtlas>),
     /// Of a system of one's own.
     Runs(Box<RunsAtlas>),
 }
@@ -58,6 +58,6 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
         )));
     }
     let document: AtlasDocument = json::parse(&text).map_err(unusable)?;
-    let atlas = Atlas::try_from(document).map_err(|error| unusable(error.to_string()))?;
+    let atlas = CollisionAtlas::try_from(document).map_err(|error| unusable(error.to_string()))?;
     Ok(AnyAtlas::Collisions(Box::new(atlas)))
 }

@@ -90,12 +90,16 @@ impl Rows {
 }
 
 /// A CSV file that is being written.
-pub struct CsvFile(OutputFile);
+pub struct CsvFile {
+    file: OutputFile,
+    /// Rows that are not written yet.
+    pub rows: Rows,
+}
 
 impl CsvFile {
     /// Starts to write `path`.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        Ok(Self(OutputFile::create(path)?))
+        Ok(Self { file: OutputFile::create(path)?, rows: Rows::default() })
     }
 
     /// Makes sure that `path` can be written.
@@ -105,17 +109,32 @@ impl CsvFile {
 
     /// Writes rows.
     pub fn write(&mut self, rows: &Rows) -> Result<(), FileError> {
-        self.0.write_all(&rows.text).map_err(|error| self.0.failure(error))
+        self.file.write_all(&rows.text).map_err(|error| self.file.failure(error))
+    }
+
+    /// Ends a row of [`Self::rows`], which are written when they are many.
+    pub fn end(&mut self) -> Result<(), FileError> {
+        self.rows.end();
+        if self.rows.text.len() < MOST_KEPT { Ok(()) } else { self.flush() }
+    }
+
+    fn flush(&mut self) -> Result<(), FileError> {
+        let mut rows = std::mem::take(&mut self.rows);
+        self.write(&rows)?;
+        rows.clear();
+        self.rows = rows;
+        Ok(())
     }
 
     /// Whether it is a pipe that nobody reads any more.
     pub fn is_unheard(&self) -> bool {
-        self.0.is_unheard()
+        self.file.is_unheard()
     }
 
     /// The file with all rows.
-    pub fn store(self) -> Result<StoredFile, FileError> {
-        self.0.store()
+    pub fn store(mut self) -> Result<StoredFile, FileError> {
+        self.flush()?;
+        self.file.store()
     }
 }
 

@@ -3,7 +3,7 @@
 use stickslip_tracer::{Cubic, Node, Point, TraceOptions, trace};
 
 use super::error::AtlasError;
-use super::regions::Atlas;
+use super::regions::CollisionAtlas;
 use crate::chart::Range;
 use crate::family::CollisionPlane;
 use crate::oblique::Oblique;
@@ -54,7 +54,7 @@ impl Oblique {
         let network = trace(&plane.family(), &plane.window(), &TraceOptions::default())
             .map_err(|error| AtlasError::of(&plane, error))?;
         let nodes = network.curves.iter().flat_map(|curve| curve.nodes.windows(2));
-        let places = nodes.flat_map(|nodes| crossings::crossings(nodes, x));
+        let places = nodes.flat_map(|nodes| crossings(nodes, x));
         let angle = |place| self.angle_rad(plane.parameters(&place)[1]);
         let mut angles_rad: Vec<f64> = places.map(angle).collect();
         angles_rad.sort_by(f64::total_cmp);
@@ -62,7 +62,7 @@ impl Oblique {
     }
 }
 
-impl Atlas {
+impl CollisionAtlas {
     /// ψ of all boundaries at `kappa`, in ascending order. They are as accurate as the boundaries.
     pub fn boundaries_at(&self, kappa: f64) -> Vec<f64> {
         let x = self.plane.chart().abscissa(kappa);

@@ -6,7 +6,8 @@ use stickslip_tracer::{
     AtlasOptions, Curve, Draft, Executor, Network, NetworkOf, Point, TraceOptions, VerifyOptions,
 };
 
-use super::boundary::{BoundaryKind, itinerary};
+use super::boundary::BoundaryKind;
+use crate::family::general::itinerary;
 use crate::family::{CollisionFamily, CollisionPlane};
 
 /// The atlas of a plane: regions have itineraries, and boundaries their kinds.

@@ -2,8 +2,7 @@
 
 use stickslip_model::{InvalidValue, Law, Reduction};
 
-use crate::chart::Chart;
-use crate::chart::Range;
+use crate::chart::{Chart, Range};
 use crate::family::CollisionPlane;
 use crate::sheet::{Sheet, ToleranceRange, TooNarrow};
 

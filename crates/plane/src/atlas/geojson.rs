@@ -5,7 +5,7 @@ use serde_json::json;
 use stickslip_tracer::{Side, Stretch};
 
 use super::document::AtlasDocument;
-use super::regions::Atlas;
+use super::regions::CollisionAtlas;
 use crate::chart::Chart;
 
 /// A closed line of points (κ, ψ), or a piece of one.
@@ -14,12 +14,12 @@ type Ring = Vec<[f64; 2]>;
 /// An atlas as GeoJSON: its regions, its boundaries and its vertices, in this order.
 ///
 /// The coordinates are (κ, ψ).
-pub fn geojson(atlas: &Atlas) -> FeatureCollection {
+pub fn geojson(atlas: &CollisionAtlas) -> FeatureCollection {
     document_geojson(atlas, &AtlasDocument::new(atlas))
 }
 
 /// As [`geojson()`], of an atlas with its document.
-pub fn document_geojson(atlas: &Atlas, document: &AtlasDocument) -> FeatureCollection {
+pub fn document_geojson(atlas: &CollisionAtlas, document: &AtlasDocument) -> FeatureCollection {
     let lines = atlas.polylines();
     let regions = document.regions.iter().map(|region| {
         let properties = json!({
@@ -60,7 +60,7 @@ fn feature(geometry: Geometry, properties: serde_json::Value) -> Feature {
 }
 
 /// A region as one polygon with holes, or as several polygons that touch at vertices.
-fn polygons(atlas: &Atlas, lines: &[Ring], region: usize) -> Geometry {
+fn polygons(atlas: &CollisionAtlas, lines: &[Ring], region: usize) -> Geometry {
     let rings = atlas.regions.outlines(region).into_iter();
     let rings = rings.map(|outline| ring(atlas.plane.chart(), lines, &outline));
     let (around, holes): (Vec<Ring>, Vec<Ring>) = rings.partition(|ring| area(ring) > 0.0);

@@ -5,9 +5,8 @@ use std::fmt;
 use stickslip_model::Engine;
 use stickslip_tracer::{Location, Point, Window};
 
-use super::regions::Atlas;
-use crate::chart::Chart;
-use crate::chart::Range;
+use super::regions::CollisionAtlas;
+use crate::chart::{Chart, Range};
 
 /// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +72,7 @@ impl fmt::Display for ParameterPlace {
     }
 }
 
-impl Atlas {
+impl CollisionAtlas {
     /// Looks up a collision by its two parameters: κ and ψ, or the velocities. Within the error of
     /// a boundary, the collision itself decides, computed by the best engine for it.
     pub fn locate(&self, parameters: [f64; 2]) -> Located {

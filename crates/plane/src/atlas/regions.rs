@@ -13,7 +13,7 @@ pub type Regions = Subdivision<String, BoundaryKind>;
 
 /// Every boundary in a window, the regions between them, and what their verification found.
 #[derive(Clone, Debug)]
-pub struct Atlas {
+pub struct CollisionAtlas {
     /// The collisions, and the traced coordinates, in which the boundaries are cubics.
     pub plane: CollisionPlane,
     /// The impact ratios from which ψ was reduced, if the window was given in impact ratios.
@@ -28,7 +28,7 @@ pub struct Atlas {
     pub report: VerificationReport,
 }
 
-impl Atlas {
+impl CollisionAtlas {
     /// The itinerary of a region: one character per phase, `+` and `-` for slip, `o` for stick. It
     /// is empty if it is not known.
     ///
@@ -80,7 +80,7 @@ pub fn switch_count(itinerary: &str) -> usize {
     itinerary.len().saturating_sub(1)
 }
 
-impl Atlas {
+impl CollisionAtlas {
     /// The points (κ, ψ) of each boundary, in the order of the boundaries. They are so close that
     /// straight lines between them look smooth in a picture of the window.
     pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {

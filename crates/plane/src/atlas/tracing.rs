@@ -6,7 +6,7 @@ use stickslip_tracer::{AtlasOptions, Point, Surveyor, TraceOptions, VerifyOption
 use super::draft::{CollisionDraft, integrated, room_beyond};
 use super::error::AtlasError;
 use super::frame::Frame;
-use super::regions::Atlas;
+use super::regions::CollisionAtlas;
 use super::verification::VerificationReport;
 use crate::family::CollisionPlane;
 use crate::progress::{InParallel, Watch};
@@ -21,8 +21,8 @@ pub fn trace<'w>(
     frame: Frame,
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
-) -> Result<Atlas, AtlasError> {
-    Ok(Atlas { ratio: frame.ratio, ..divide(&frame.plane()?, tolerance, watch)? })
+) -> Result<CollisionAtlas, AtlasError> {
+    Ok(CollisionAtlas { ratio: frame.ratio, ..divide(&frame.plane()?, tolerance, watch)? })
 }
 
 /// Traces the boundaries in the window of a plane, accurate to `tolerance` in its second parameter,
@@ -57,7 +57,7 @@ pub fn divide<'w>(
     plane: &CollisionPlane,
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
-) -> Result<Atlas, AtlasError> {
+) -> Result<CollisionAtlas, AtlasError> {
     divide_watched(plane, tolerance, watch.into())
 }
 
@@ -67,7 +67,7 @@ fn divide_watched(
     plane: &CollisionPlane,
     tolerance: f64,
     watch: Watch<'_>,
-) -> Result<Atlas, AtlasError> {
+) -> Result<CollisionAtlas, AtlasError> {
     require_traceable(plane, tolerance)?;
     let options = AtlasOptions {
         trace: trace_options(plane, tolerance),
@@ -81,7 +81,7 @@ fn divide_watched(
     let report = VerificationReport::new(plane, &options.verify, &drawn);
     let mut regions = drawn.plane;
     regions.label_rest(|sample| integrated(plane, sample).ok());
-    Ok(Atlas { plane: *plane, ratio: None, tolerance, regions, extrema, report })
+    Ok(CollisionAtlas { plane: *plane, ratio: None, tolerance, regions, extrema, report })
 }
 
 /// Refuses a plane in which boundaries cannot be accurate to `tolerance`, or not be verified, or of

@@ -267,6 +267,11 @@ impl Observer<Mode, STATE> for Fired {
     }
 }
 
+/// Whether an exit in the name of a margin stands for a beginning.
+pub fn is_beginning(exit: &Exit) -> bool {
+    exit.guard >= BEGINS
+}
+
 /// The beginning that stands for a guard in the first exit of a margin.
 pub fn begun_with(exit: &Exit) -> Beginning {
     BEGINNINGS[exit.guard - BEGINS]

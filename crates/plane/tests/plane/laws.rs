@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_model::{Damping, End, Law, Normal, presets};
-use stickslip_plane::atlas::{Atlas, BoundaryKind, Frame};
+use stickslip_plane::atlas::{BoundaryKind, CollisionAtlas, Frame};
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};
@@ -17,7 +17,7 @@ pub fn with_law(name: &str, damping: f64, window: Frame) -> Frame {
 
 /// No collision has other switches than its region. The tracer may leave a change open where a
 /// boundary that runs straight up meets the edge of the window.
-fn agrees_with_collisions(verified: &Atlas) {
+fn agrees_with_collisions(verified: &CollisionAtlas) {
     let report = &verified.report;
     assert!(report.mismatches.is_empty() && report.findings.is_empty(), "{report:?}");
     assert!(report.unresolved.len() <= 1 && report.share_tried > 0.999, "{report:?}");
@@ -56,7 +56,7 @@ fn a_linear_contact_has_its_closed_forms() {
     assert_eq!(atlas.itinerary(region(atlas, 2.0, 1.6)), "+");
 }
 
-fn region(atlas: &stickslip_plane::atlas::Atlas, kappa: f64, psi: f64) -> usize {
+fn region(atlas: &stickslip_plane::atlas::CollisionAtlas, kappa: f64, psi: f64) -> usize {
     atlas.locate([kappa, psi]).region.unwrap()
 }
 

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use stickslip_model::{Collision, Contact};
-use stickslip_plane::atlas::Atlas;
+use stickslip_plane::atlas::CollisionAtlas;
 use stickslip_tracer::Location;
 
 use super::boundaries::Boundaries;
@@ -39,7 +39,7 @@ struct Filled {
 /// strips.
 pub fn arrays(
     settings: &TableSettings,
-    division: &Atlas,
+    division: &CollisionAtlas,
     begin: impl Fn(usize),
     done: impl Fn() + Sync,
 ) -> Result<Arrays, TableError> {
@@ -83,7 +83,7 @@ pub fn arrays(
 }
 
 struct Task<'a> {
-    division: &'a Atlas,
+    division: &'a CollisionAtlas,
     demand: Demand,
     has_normals: bool,
 }

@@ -1,7 +1,7 @@
 //! Traced boundaries as graphs over the first axis.
 
 use stickslip_model::Collision;
-use stickslip_plane::atlas::Atlas;
+use stickslip_plane::atlas::CollisionAtlas;
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_tracer::{Cubic, Node, Point};
 
@@ -18,8 +18,8 @@ pub struct Boundaries {
 }
 
 impl Boundaries {
-    pub fn of(division: &Atlas) -> Self {
-        let Atlas { plane, regions, .. } = division;
+    pub fn of(division: &CollisionAtlas) -> Self {
+        let CollisionAtlas { plane, regions, .. } = division;
         let shortest = MERGED * regions.window().extent().x;
         let Range { low, high } = plane.sheet().sides[0];
         let mut all = Vec::new();

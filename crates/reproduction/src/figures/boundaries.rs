@@ -7,7 +7,7 @@ use stickslip_figure::pictures::studies::Picture;
 use stickslip_figure::{number, pictures as drawn};
 use stickslip_model::exact;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Atlas, Frame, trace};
+use stickslip_plane::atlas::{CollisionAtlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::Study;
 
@@ -77,7 +77,7 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     Ok(Section::new(study, pictures).with_atlas("atlas.json", title, &verified))
 }
 
-fn headline(verified: &Atlas) -> String {
+fn headline(verified: &CollisionAtlas) -> String {
     let (map, report) = (&verified.regions, &verified.report);
     let wrong = match report.mismatches.len() {
         0 => format!("none of {} collisions has other switches than its region", report.tried),
@@ -95,7 +95,7 @@ fn headline(verified: &Atlas) -> String {
 }
 
 /// What is in an atlas and how it was verified, in sentences.
-pub fn summary(verified: &Atlas) -> String {
+pub fn summary(verified: &CollisionAtlas) -> String {
     let (map, report) = (&verified.regions, &verified.report);
     let agree = if report.agrees { "all agree with them" } else { "not all agree with them" };
     format!(
@@ -112,7 +112,7 @@ pub fn summary(verified: &Atlas) -> String {
 
 /// The largest distance in ψ between the points of the traced uppermost boundary and its closed
 /// form.
-fn distance_from_closed_form(atlas: &Atlas) -> f64 {
+fn distance_from_closed_form(atlas: &CollisionAtlas) -> f64 {
     let curves = atlas.regions.curves().iter();
     // The label of its upper side has one phase.
     let uppermost = curves.filter(|curve| curve.sides.iter().any(|side| side.len() == 1));

@@ -6,7 +6,7 @@ use stickslip_figure::pictures::atlas::boundaries;
 use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_figure::{number, style};
-use stickslip_plane::atlas::Atlas;
+use stickslip_plane::atlas::CollisionAtlas;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
 use stickslip_studies::{Column, Study, Table};
 
@@ -78,7 +78,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
 }
 
 /// The boundaries as lines of the picture.
-fn drawn(verified: &Atlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f64)>)> {
+fn drawn(verified: &CollisionAtlas, reading: Reading) -> Vec<(Stroke, Vec<(f64, f64)>)> {
     let scale = reading.kappa(1.0);
     let lines = boundaries(verified).into_iter().map(|(line, points)| {
         let points = points.into_iter().map(|(kappa, psi)| (kappa / scale, ratio(psi)));
@@ -106,7 +106,7 @@ fn findings(
     lines: &Lines,
     points: &[LetteredPoint],
     most: [i32; 2],
-    verified: &Atlas,
+    verified: &CollisionAtlas,
 ) -> Vec<String> {
     let mut findings = vec![format!(
         "The paper has up to {MOST_SWITCHES} switches at {} = {}. With the {} there are at most {} \

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use stickslip_figure::pictures::studies as pictures;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Atlas, AtlasError, Frame, trace};
+use stickslip_plane::atlas::{AtlasError, CollisionAtlas, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::paper::{MOST_RATIO_4, MOST_STIFFNESS, Reading, psi};
 use stickslip_studies::{convergence, stiff_springs};
@@ -23,7 +23,7 @@ pub struct Reproduction {
     /// The model of the spring on which the statements are tested.
     pub spring: Spring,
     /// The boundaries of Figure 4, once they are traced.
-    boundaries: OnceLock<Arc<Atlas>>,
+    boundaries: OnceLock<Arc<CollisionAtlas>>,
 }
 
 impl Reproduction {
@@ -34,7 +34,7 @@ impl Reproduction {
     }
 
     /// The boundaries in the plane of Figure 4, in both readings, verified.
-    pub(super) fn boundaries(&self) -> Result<&Arc<Atlas>, AtlasError> {
+    pub(super) fn boundaries(&self) -> Result<&Arc<CollisionAtlas>, AtlasError> {
         if let Some(verified) = self.boundaries.get() {
             return Ok(verified);
         }

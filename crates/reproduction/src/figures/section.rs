@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Engine;
-use stickslip_plane::atlas::Atlas;
+use stickslip_plane::atlas::CollisionAtlas;
 use stickslip_plane::sweep::FailureCount;
 use stickslip_studies::{Column, Study};
 
@@ -48,7 +48,7 @@ pub enum Content {
     /// A map.
     Map(Arc<Sweep>),
     /// An atlas.
-    Atlas(Arc<Atlas>),
+    Atlas(Arc<CollisionAtlas>),
 }
 
 /// The main results of all `sections`, a sentence each: the opening of a page that shows them.
@@ -87,7 +87,12 @@ impl Section {
     }
 
     /// The section with an atlas as `name`, and with what speaks against the atlas.
-    pub(super) fn with_atlas(mut self, name: &str, title: &str, atlas: &Arc<Atlas>) -> Self {
+    pub(super) fn with_atlas(
+        mut self,
+        name: &str,
+        title: &str,
+        atlas: &Arc<CollisionAtlas>,
+    ) -> Self {
         let (name, title) = (name.to_owned(), title.to_owned());
         if let Some(reason) = atlas.objection() {
             let what = "the atlas is complete, but may be wrong";

@@ -5,7 +5,7 @@ use std::error::Error;
 use rayon::prelude::*;
 use stickslip::model::Engine;
 use stickslip::plane::Range;
-use stickslip::plane::atlas::{self, Atlas, Frame};
+use stickslip::plane::atlas::{self, CollisionAtlas, Frame};
 use stickslip::plane::progress::SILENT;
 
 use crate::{Row, timed};
@@ -59,7 +59,7 @@ pub fn row(window: &Window, points: usize) -> Result<Row, Box<dyn Error>> {
 
 /// The number of random points, uniform in the logarithms of κ and ψ, whose region has other
 /// switches than their collisions.
-fn wrong(atlas: &Atlas, points: usize) -> usize {
+fn wrong(atlas: &CollisionAtlas, points: usize) -> usize {
     let [kappa, psi] = atlas.plane.sheet().sides;
     let plane = atlas.plane;
     let mut random = fastrand::Rng::with_seed(1);

@@ -17,7 +17,7 @@ use std::{env, fs};
 use fastrand::Rng;
 use rayon::prelude::*;
 use stickslip::model::{Collision, Contact, Engine};
-use stickslip::plane::atlas::{Atlas, Frame, trace};
+use stickslip::plane::atlas::{CollisionAtlas, Frame, trace};
 use stickslip::plane::progress::SILENT;
 use stickslip_practice::tables::{self, Table, TableSettings};
 
@@ -79,7 +79,7 @@ fn at_random(settings: &TableSettings, random: &mut Rng) -> [f64; 2] {
 }
 
 /// A point beside a boundary.
-fn beside(atlas: &Atlas, random: &mut Rng) -> [f64; 2] {
+fn beside(atlas: &CollisionAtlas, random: &mut Rng) -> [f64; 2] {
     let curves = atlas.regions.curves();
     loop {
         let nodes = &curves[random.usize(..curves.len())].nodes;
@@ -98,7 +98,11 @@ fn beside(atlas: &Atlas, random: &mut Rng) -> [f64; 2] {
 }
 
 /// ψ at which collisions change their switches at `kappa`, near the chord between two nodes.
-fn crossing(atlas: &Atlas, ends: [stickslip::tracer::Point; 2], kappa: f64) -> Option<f64> {
+fn crossing(
+    atlas: &CollisionAtlas,
+    ends: [stickslip::tracer::Point; 2],
+    kappa: f64,
+) -> Option<f64> {
     let [low, high] = ends.map(|point| atlas.plane.parameters(&point)[1]);
     let spread = 0.1 * (high - low).abs() + 1e-9 * low;
     let (mut low, mut high) = (low.min(high) - spread, low.max(high) + spread);

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use rayon::prelude::*;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
-use stickslip_files::output::csv::{CsvFile, Rows};
+use stickslip_files::output::csv::CsvFile;
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::npz::{Archive, array, number, plain, text, texts};
 use stickslip_files::output::picture::PictureFile;
@@ -163,13 +163,14 @@ impl Map<'_> {
 
     fn table(&self, path: &std::path::Path) -> Result<StoredFile, Failure> {
         let mut file = CsvFile::create(path)?;
-        let mut rows = Rows::default();
+        let rows = &mut file.rows;
         rows.fields(self.plane.names.axes.iter().map(String::as_str));
         rows.fields(["event_count", "outcome", "end_mode", "end_time"]);
         rows.fields(self.plane.system.components.iter().map(|it| format!("end_{}", it.name)));
-        rows.end();
+        file.end()?;
         for (y, row) in self.y.iter().zip(self.cells.chunks(self.x.len())) {
             for (x, cell) in self.x.iter().zip(row) {
+                let rows = &mut file.rows;
                 rows.number(*x);
                 rows.number(*y);
                 rows.count(cell.events);
@@ -178,10 +179,8 @@ impl Map<'_> {
                 rows.field(mode.map_or("", |mode| &self.plane.system.modes[mode].name));
                 rows.number(cell.time);
                 cell.state.iter().for_each(|&value| rows.number(value));
-                rows.end();
+                file.end()?;
             }
-            file.write(&rows)?;
-            rows.clear();
         }
         Ok(file.store()?)
     }

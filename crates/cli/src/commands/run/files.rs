@@ -5,7 +5,7 @@ use std::path::Path;
 use stickslip_expression::{Recording, System};
 use stickslip_figure::Svg;
 use stickslip_figure::pictures::{self, run::Run};
-use stickslip_files::output::csv::{CsvFile, Rows};
+use stickslip_files::output::csv::CsvFile;
 use stickslip_files::output::file::StoredFile;
 
 use super::label;
@@ -14,8 +14,6 @@ use crate::shared::system::SystemRun;
 
 /// So many components are drawn.
 const MOST_PANELS: usize = 8;
-/// Rows are written when they are so many.
-const ROWS_AT_ONCE: usize = 10_000;
 
 /// Writes the events with the states on both sides of them, all but the name of the file.
 pub fn write_events(
@@ -24,24 +22,19 @@ pub fn write_events(
     found: &Recording,
 ) -> Result<StoredFile, Failure> {
     let mut file = CsvFile::create(path)?;
-    let mut rows = Rows::default();
-    rows.fields(["time", "event", "mode_before", "mode_after"]);
+    file.rows.fields(["time", "event", "mode_before", "mode_after"]);
     for side in ["before", "after"] {
-        rows.fields(system.components.iter().map(|it| format!("{}_{side}", it.name)));
+        file.rows.fields(system.components.iter().map(|it| format!("{}_{side}", it.name)));
     }
-    rows.end();
-    for (index, event) in found.events.iter().enumerate() {
+    file.end()?;
+    for event in &found.events {
+        let rows = &mut file.rows;
         rows.number(event.s);
         rows.field(label(system, event));
         rows.fields([event.from, event.to].map(|mode| system.modes[mode].name.as_str()));
         event.before.iter().chain(&event.after).for_each(|&value| rows.number(value));
-        rows.end();
-        if index % ROWS_AT_ONCE == 0 {
-            file.write(&rows)?;
-            rows.clear();
-        }
+        file.end()?;
     }
-    file.write(&rows)?;
     Ok(file.store()?)
 }
 
@@ -54,12 +47,11 @@ pub fn write_course(
     found: &Recording,
 ) -> Result<StoredFile, Failure> {
     let mut file = CsvFile::create(path)?;
-    let mut rows = Rows::default();
-    rows.fields(["time", "mode", "event"]);
-    rows.fields(system.components.iter().map(|it| it.name.as_str()));
-    rows.end();
-    let mut written = 0;
+    file.rows.fields(["time", "mode", "event"]);
+    file.rows.fields(system.components.iter().map(|it| it.name.as_str()));
+    file.end()?;
     let mut row = |s: f64, mode: usize, event: Option<usize>, state: &[f64]| {
+        let rows = &mut file.rows;
         rows.number(s);
         rows.field(&system.modes[mode].name);
         match event {
@@ -69,13 +61,7 @@ pub fn write_course(
         for &value in state {
             rows.number(value);
         }
-        rows.end();
-        written += 1;
-        if written % ROWS_AT_ONCE == 0 {
-            file.write(&rows)?;
-            rows.clear();
-        }
-        Ok::<(), Failure>(())
+        file.end()
     };
     let (start, end) = (found.start(), found.run.s);
     let mut events = found.events.iter().enumerate().peekable();
@@ -90,7 +76,6 @@ pub fn write_course(
             row(s, found.mode_at(s), None, &state)?;
         }
     }
-    file.write(&rows)?;
     Ok(file.store()?)
 }
 

@@ -13,8 +13,9 @@ pub const SCHEMA: &str = "stickslip.atlas/1";
 
 /// An atlas in the layout of its file.
 ///
-/// [`AtlasDocument::new`] makes it from an atlas, `Atlas::try_from` reads it back. All numbers are
-/// written so that they read back exactly, and the regions are then the same, bit for bit.
+/// [`AtlasDocument::new`] makes it from an atlas, `CollisionAtlas::try_from` reads it back. All
+/// numbers are written so that they read back exactly, and the regions are then the same, bit for
+/// bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AtlasDocument {
     /// The name of the layout, [`SCHEMA`].

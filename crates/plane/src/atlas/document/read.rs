@@ -10,12 +10,11 @@ use super::layout::{
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
-use crate::atlas::regions::{Atlas, Regions, switch_count};
-use crate::chart::Chart;
-use crate::chart::Range;
+use crate::atlas::regions::{CollisionAtlas, Regions, switch_count};
+use crate::chart::{Chart, Range};
 use crate::family::CollisionPlane;
 
-impl TryFrom<AtlasDocument> for Atlas {
+impl TryFrom<AtlasDocument> for CollisionAtlas {
     type Error = AtlasDocumentError;
 
     /// Reads an atlas back. The regions are made from the boundaries, as when the atlas was traced.

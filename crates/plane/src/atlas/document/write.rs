@@ -9,13 +9,13 @@ use super::layout::{
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
-use crate::atlas::regions::{Atlas, switch_count};
+use crate::atlas::regions::{CollisionAtlas, switch_count};
 use crate::chart::Chart;
 
 impl AtlasDocument {
     /// The document of an atlas of κ and ψ.
-    pub fn new(atlas: &Atlas) -> Self {
-        let Atlas { plane, tolerance, regions, extrema, report, .. } = atlas;
+    pub fn new(atlas: &CollisionAtlas) -> Self {
+        let CollisionAtlas { plane, tolerance, regions, extrema, report, .. } = atlas;
         let chart = plane.chart();
         let boundaries = regions.curves().iter().enumerate();
         Self {
@@ -51,7 +51,7 @@ impl WindowFields {
 }
 
 impl BoundaryFields {
-    fn new(atlas: &Atlas, id: usize, curve: &Curve<String, BoundaryKind>) -> Self {
+    fn new(atlas: &CollisionAtlas, id: usize, curve: &Curve<String, BoundaryKind>) -> Self {
         let [below, above] = in_order(&curve.nodes, curve.sides.each_ref());
         let vertices = atlas.regions.vertices();
         let place = |end: usize| match curve.ends.map(|ends| vertices[ends[end]].kind) {
@@ -75,8 +75,8 @@ impl BoundaryFields {
 }
 
 /// All vertices, each with the boundaries that start or end there.
-fn vertices(atlas: &Atlas) -> Vec<VertexFields> {
-    let Atlas { plane, regions, .. } = atlas;
+fn vertices(atlas: &CollisionAtlas) -> Vec<VertexFields> {
+    let CollisionAtlas { plane, regions, .. } = atlas;
     let mut ending = vec![Vec::new(); regions.vertices().len()];
     for (id, curve) in regions.curves().iter().enumerate() {
         for vertex in curve.ends.into_iter().flatten() {
@@ -103,7 +103,7 @@ impl ExtremumFields {
 }
 
 impl RegionFields {
-    fn new(atlas: &Atlas, id: usize) -> Self {
+    fn new(atlas: &CollisionAtlas, id: usize) -> Self {
         let region = &atlas.regions.regions()[id];
         let mut boundaries: Vec<usize> = region.boundary.iter().map(|side| side.0).collect();
         boundaries.sort_unstable();
