@@ -5,14 +5,14 @@
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
 //! `change` finds where the verdict changes, `curve` follows special orbits over two parameters,
-//! and `doubled` goes over to orbits of twice the period.
+//! and `switched` goes over to another branch.
 
 mod borders;
 mod change;
 pub(crate) mod curve;
-mod doubled;
 mod locate;
 mod point;
+mod switched;
 mod test;
 
 use stickslip_expression::InvalidValue;
@@ -62,17 +62,19 @@ impl BranchOptions {
     }
 }
 
-/// Orbits over a parameter.
+/// Orbits over a parameter. Parameters, orbits and rules are places in a system, or records with
+/// names.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Branch {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Branch<P = usize, O = Orbit, R = Option<usize>> {
     /// The parameter, by its place in the system.
-    pub parameter: usize,
+    pub parameter: P,
     /// Its range.
     pub range: [f64; 2],
     /// The orbits, in the order of the branch.
-    pub points: Vec<Orbit>,
+    pub points: Vec<O>,
     /// The special orbits, in the order of the branch.
-    pub specials: Vec<SpecialOrbit>,
+    pub specials: Vec<SpecialOrbit<O, R>>,
     /// Whether the branch comes back to its start.
     pub closed: bool,
     /// Why the branch is not complete, or not known as well as others are.
@@ -81,7 +83,8 @@ pub struct Branch {
 
 /// An orbit at which something changes along a branch.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpecialOrbit {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpecialOrbit<O = Orbit, R = Option<usize>> {
     /// What changes.
     pub kind: SpecialKind,
     /// The value of the parameter.
@@ -91,9 +94,10 @@ pub struct SpecialOrbit {
     /// The segment at which it happens, if it happens at one.
     pub segment: Option<usize>,
     /// The rule, by its place in the mode of the segment.
-    pub rule: Option<usize>,
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub rule: R,
     /// The orbit.
-    pub orbit: Orbit,
+    pub orbit: O,
 }
 
 /// What changes at a special orbit.

@@ -4,7 +4,7 @@
 //! functions of Python. An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
 //! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
 //! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
-//! parameters, and [`Orbits::doubled`] goes over to the orbit of twice the period at a flip.
+//! parameters, and [`Orbits::switched`] goes over to another branch at a flip or a branch point.
 //!
 //! ```
 //! use stickslip_expression::System;
@@ -47,6 +47,7 @@
 //! has the ways to an orbit, `branch` follows it, and `document` writes it.
 
 mod admissible;
+mod attractors;
 mod branch;
 #[cfg(feature = "serde")]
 pub mod document;
@@ -57,7 +58,9 @@ mod itinerary;
 mod multipliers;
 mod newton;
 mod orbit;
+mod settle;
 
+pub use attractors::{Attractor, Basins, Column, Exponents, Section, SectionPoint};
 pub use branch::curve::{Meeting, SpecialCurve};
 pub use branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
 pub use error::OrbitError;

@@ -8,7 +8,7 @@ use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint,
 use stickslip_files::input::{json, source};
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_orbits::document::{BRANCH, CurveDocument, OrbitRecord, SpecialRecord};
+use stickslip_orbits::document::{BRANCH, CurveRecord, Document, OrbitRecord, SpecialRecord};
 use stickslip_orbits::{BranchOptions, Orbits};
 use stickslip_plane::sealed;
 
@@ -89,7 +89,7 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
     let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
     let curve = orbits.curve(&special, parameters, window, &BranchOptions::default());
     let curve = curve.map_err(failure)?;
-    let document = CurveDocument::new(&orbits, &title(&arguments.system), &curve);
+    let document = Document::of_curve(&orbits, &title(&arguments.system), &curve);
     let mut stored = Vec::new();
     if let Some(file) = file {
         stored.push(write_json(file, &document)?);
@@ -98,7 +98,7 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
         stored.push(plot.write(Ok(picture_of(&document)))?);
     }
     deliver(stored, counted(curve.points.len(), "orbit", "orbits"))?;
-    print(|out| table(out, &document))?;
+    print(|out| table(out, &document.content))?;
     Failure::if_doubtful(out.unwrap_or(&arguments.system), "curve is", curve.objection)
 }
 
@@ -123,36 +123,37 @@ fn special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
 }
 
 /// The parameters of an orbit.
-fn at(document: &CurveDocument, orbit: &OrbitRecord) -> [f64; 2] {
-    [0, 1].map(|k| orbit.parameters[&document.parameters[k]])
+fn at(curve: &CurveRecord, orbit: &OrbitRecord) -> [f64; 2] {
+    [0, 1].map(|k| orbit.parameters[&curve.parameters[k]])
 }
 
-fn table(out: &mut dyn Write, document: &CurveDocument) -> io::Result<()> {
-    let [x, y] = &document.parameters;
-    let header = [document.kind.name(), x, y].map(str::to_owned);
+fn table(out: &mut dyn Write, curve: &CurveRecord) -> io::Result<()> {
+    let [x, y] = &curve.parameters;
+    let header = [curve.kind.name(), x, y].map(str::to_owned);
     let row = |name: &str, orbit: &OrbitRecord| {
-        let [x, y] = at(document, orbit);
+        let [x, y] = at(curve, orbit);
         [name.to_owned(), number(x), number(y)]
     };
-    let ends = [document.points.first(), document.points.last()];
+    let ends = [curve.points.first(), curve.points.last()];
     let ends = ends.into_iter().flatten().map(|it| row("end", it));
-    let meetings = document.meetings.iter().map(|it| row(it.kind.name(), &it.orbit));
+    let meetings = curve.meetings.iter().map(|it| row(it.kind.name(), &it.orbit));
     text::aligned(out, &std::iter::once(header).chain(ends).chain(meetings).collect::<Vec<_>>())
 }
 
-fn picture_of(document: &CurveDocument) -> stickslip_figure::Svg {
-    let points = document.points.iter();
-    let meetings = document.meetings.iter().map(|it| SpecialPoint {
+fn picture_of(document: &Document<CurveRecord>) -> stickslip_figure::Svg {
+    let curve = &document.content;
+    let points = curve.points.iter();
+    let meetings = curve.meetings.iter().map(|it| SpecialPoint {
         name: it.kind.name(),
-        at: at(document, &it.orbit),
+        at: at(curve, &it.orbit),
         behind: it.behind,
     });
-    let kind = document.kind.name();
+    let kind = curve.kind.name();
     draw(&BranchCurve {
         title: &format!("{}: {kind} of a periodic orbit", document.system),
-        axes: [&document.parameters[0], &document.parameters[1]],
+        axes: [&curve.parameters[0], &curve.parameters[1]],
         points: points
-            .map(|it| BranchPoint { at: at(document, it), stretch: Stretch::Special })
+            .map(|it| BranchPoint { at: at(curve, it), stretch: Stretch::Special })
             .collect(),
         specials: meetings.collect(),
     })

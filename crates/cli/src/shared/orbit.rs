@@ -12,9 +12,9 @@ use stickslip_plane::sealed;
 use super::system::{place as parameter, read, setting, time, title, values};
 use crate::error::Failure;
 
-/// The orbit of a system.
+/// A system, and where its runs start.
 #[derive(Debug, clap::Args)]
-pub struct GuessArguments {
+pub struct StartArguments {
     /// The system, a text as docs/systems.md describes it; - is standard input
     #[arg(value_name = "SYSTEM.slip")]
     pub system: PathBuf,
@@ -22,6 +22,27 @@ pub struct GuessArguments {
     /// The value of a parameter; may be repeated
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "System")]
     pub set: Vec<(String, f64)>,
+
+    /// The value of a component at the start, instead of that of the system; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "System")]
+    pub start: Vec<(String, f64)>,
+
+    /// The mode at the start, instead of that of the system
+    #[arg(long, value_name = "MODE", help_heading = "System")]
+    pub mode: Option<String>,
+
+    /// The time at the start, instead of that of the system
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(help_heading = "System")]
+    pub time: Option<f64>,
+}
+
+/// The orbit of a system.
+#[derive(Debug, clap::Args)]
+pub struct GuessArguments {
+    /// The system, and where the orbit starts about.
+    #[command(flatten)]
+    pub from: StartArguments,
 
     /// The rules that end the segments of the orbit, in order
     #[arg(long, value_name = "RULE,RULE,…", value_delimiter = ',', help_heading = "Guess")]
@@ -38,19 +59,6 @@ pub struct GuessArguments {
     #[arg(long, value_name = "FILE.json", help_heading = "Guess")]
     #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
     pub near: Option<PathBuf>,
-
-    /// The value of a component at the start, instead of that of the system; may be repeated
-    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Guess")]
-    pub start: Vec<(String, f64)>,
-
-    /// The mode at the start, instead of that of the system
-    #[arg(long, value_name = "MODE", help_heading = "Guess")]
-    pub mode: Option<String>,
-
-    /// The time at the start, instead of that of the system
-    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    #[arg(help_heading = "Guess")]
-    pub time: Option<f64>,
 
     /// The durations of the segments; otherwise each is up to where its rule acts
     #[arg(long, value_name = "T,T,…", value_delimiter = ',', value_parser = number::parse_option)]
@@ -69,6 +77,20 @@ struct Written {
 /// Largest number of bytes of a file.
 pub const MOST_BYTES: u64 = 1 << 30;
 
+/// A system with the start of its runs.
+#[derive(Debug)]
+pub struct StartedSystem {
+    /// The name of the system in titles.
+    pub name: String,
+    /// The orbits of the system.
+    pub orbits: Orbits,
+    /// The values of its parameters.
+    pub parameters: Vec<f64>,
+    mode: Option<usize>,
+    time: Option<f64>,
+    state: Option<Vec<f64>>,
+}
+
 /// An orbit that was found, with its system.
 #[derive(Debug)]
 pub struct FoundOrbit {
@@ -80,38 +102,69 @@ pub struct FoundOrbit {
     pub orbit: Orbit,
 }
 
+impl StartedSystem {
+    /// The start, as a guess without an itinerary.
+    pub fn guess(&self) -> Guess<'_> {
+        let Self { mode, time, ref state, .. } = *self;
+        Guess { mode, time, state: state.as_deref(), ..Guess::default() }
+    }
+}
+
+impl StartArguments {
+    /// Reads the system.
+    ///
+    /// # Errors
+    /// [`Failure`]: it cannot be read, or options do not fit it.
+    pub fn read(&self) -> Result<StartedSystem, Failure> {
+        let (system, _) = read(&self.system)?;
+        let parameters = values(&system, &self.set)?;
+        let mode = self.mode.as_deref().map(|name| place(&system, name)).transpose()?;
+        let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
+        let state = self.state(&system, &parameters)?;
+        let (name, time) = (title(&self.system), self.time);
+        Ok(StartedSystem { name, orbits, parameters, mode, time, state })
+    }
+
+    /// The state at the start, if some component has another value than the system says.
+    fn state(&self, system: &System, parameters: &[f64]) -> Result<Option<Vec<f64>>, Failure> {
+        if self.start.is_empty() {
+            return Ok(None);
+        }
+        let runnable =
+            system.with(parameters).map_err(|error| Failure::Usage(error.to_string()))?;
+        let mut state = runnable.start().state.to_vec();
+        for (name, value) in &self.start {
+            state[component(system, "--start", name)?] = *value;
+        }
+        Ok(Some(state))
+    }
+}
+
 impl GuessArguments {
     /// Finds the orbit.
     ///
     /// # Errors
     /// [`Failure`]: the system cannot be read, options do not fit it, or there is no orbit.
     pub fn find(&self) -> Result<FoundOrbit, Failure> {
-        let (system, _) = read(&self.system)?;
         if let Some(path) = &self.near {
-            return self.near(&system, path);
+            return self.near(path);
         }
-        let parameters = values(&system, &self.set)?;
-        let mode = self.mode.as_deref().map(|name| place(&system, name)).transpose()?;
-        let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
-        let state = self.state(&system, &parameters)?;
+        let started = self.from.read()?;
         let itinerary: Vec<&str> = self.itinerary.iter().map(String::as_str).collect();
-        let guess = Guess {
-            mode,
-            time: self.time,
-            state: state.as_deref(),
-            itinerary: &itinerary,
-            durations: self.durations.as_deref(),
-        };
+        let (itinerary, durations) = (&itinerary[..], self.durations.as_deref());
+        let guess = Guess { itinerary, durations, ..started.guess() };
         let orbit = match self.settle {
-            Some(time) => orbits.settled(&parameters, &guess, time),
-            None => orbits.find(&parameters, &guess),
+            Some(time) => started.orbits.settled(&started.parameters, &guess, time),
+            None => started.orbits.find(&started.parameters, &guess),
         };
         let orbit = orbit.map_err(failure)?;
-        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
+        Ok(FoundOrbit { name: started.name, orbits: started.orbits, orbit })
     }
 
     /// The orbit near that of a file.
-    fn near(&self, system: &System, path: &Path) -> Result<FoundOrbit, Failure> {
+    fn near(&self, path: &Path) -> Result<FoundOrbit, Failure> {
+        let (system, _) = read(&self.from.system)?;
+        let system = &system;
         let shown = source::shown(path);
         let unusable = |reason: String| Failure::input(shown, reason);
         let text = source::read(path, MOST_BYTES)?;
@@ -127,31 +180,11 @@ impl GuessArguments {
         let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
         let orbit = record.orbit(&orbits).map_err(failure)?;
         let mut parameters = orbit.parameters.clone();
-        for (name, value) in &self.set {
+        for (name, value) in &self.from.set {
             parameters[parameter(system, "--set", name)?] = *value;
         }
         let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
-        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
-    }
-
-    /// The state at the start, if some component has another value than the system says.
-    fn state(&self, system: &System, parameters: &[f64]) -> Result<Option<Vec<f64>>, Failure> {
-        if self.start.is_empty() {
-            return Ok(None);
-        }
-        let runnable =
-            system.with(parameters).map_err(|error| Failure::Usage(error.to_string()))?;
-        let mut state = runnable.start().state.to_vec();
-        for (name, value) in &self.start {
-            let place = system.components.iter().position(|it| it.name == *name);
-            let names: Vec<_> = system.components.iter().map(|it| it.name.as_str()).collect();
-            let unknown = || {
-                let known = names.join(", ");
-                Failure::Usage(format!("--start {name}: the state has {known}"))
-            };
-            state[place.ok_or_else(unknown)?] = *value;
-        }
-        Ok(Some(state))
+        Ok(FoundOrbit { name: title(&self.from.system), orbits, orbit })
     }
 }
 
@@ -169,5 +202,17 @@ fn place(system: &System, name: &str) -> Result<usize, Failure> {
     place.ok_or_else(|| {
         let names: Vec<_> = system.modes.iter().map(|it| it.name.as_str()).collect();
         Failure::Usage(format!("--mode {name}: expected one of {}", names.join(", ")))
+    })
+}
+
+/// The place of a component.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is no such component.
+pub fn component(system: &System, option: &str, name: &str) -> Result<usize, Failure> {
+    let place = system.components.iter().position(|it| it.name == *name);
+    place.ok_or_else(|| {
+        let names: Vec<_> = system.components.iter().map(|it| it.name.as_str()).collect();
+        Failure::Usage(format!("{option} {name}: the state has {}", names.join(", ")))
     })
 }

@@ -5,7 +5,7 @@ use stickslip_solver::{Direction, EmbeddedPair};
 
 use super::point::{Along, Point};
 use super::{SpecialKind, SpecialOrbit};
-use crate::equations::Equations;
+use crate::equations::{Equations, Event};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after};
 use crate::orbit::{Obstacle, Verdict};
@@ -94,33 +94,19 @@ impl Along<'_> {
         obstacle: &Obstacle,
     ) -> Vec<(SpecialKind, usize, Option<usize>, Margin)> {
         let legs = self.equations.legs();
-        let slides = |leg: Leg, point: &Point, segment: usize| {
-            let own = leg.rule(&self.orbits.system);
-            let (above, below) = modes_after(own, leg.mode);
-            let segments = &point.orbit.segments[segment];
-            let s = point.orbit.start;
+        let system = &self.orbits.system;
+        // Whether a mode to which a rule leads slides along what the rule waits for.
+        let slides = |leg: Leg, segment: usize| {
+            let (above, below) = modes_after(leg.rule(system), leg.mode);
             [above, below].into_iter().any(|next| {
                 next != leg.mode
-                    && [&segments.state, &segments.end].into_iter().all(|state| {
-                        let leg = Leg { next, ..leg };
-                        let parameters = &point.orbit.parameters;
-                        let event =
-                            Equations::event(&self.orbits.system, leg, parameters, (s, state));
-                        event.slides_behind()
-                    })
+                    && self.at_both_ends(from, segment, Leg { next, ..leg }, Event::slides_behind)
             })
         };
         match *obstacle {
             Obstacle::Acts { segment, rule, .. } => {
-                let previous = segment.checked_sub(1).unwrap_or(legs.len() - 1);
                 let leg = Leg { rule, ..legs[segment] };
-                let inner = if slides(leg, from, segment) {
-                    SpecialKind::GrazingSliding
-                } else if from.evaluation.ends[previous].event.slides_behind() {
-                    SpecialKind::AddingSliding
-                } else {
-                    SpecialKind::Grazing
-                };
+                let inner = self.touch(from, segment, slides(leg, segment));
                 let corner = SpecialKind::CornerCollision;
                 vec![
                     (inner, segment, Some(rule), Margin::Inner { segment, rule }),
@@ -130,12 +116,8 @@ impl Along<'_> {
             }
             Obstacle::Branches { segment, .. } => {
                 let own = from.evaluation.ends[segment].event.slides_behind();
-                let (above, below) =
-                    modes_after(legs[segment].rule(&self.orbits.system), legs[segment].mode);
-                let other = if legs[segment].next == above { below } else { above };
-                let slides = slides(Leg { next: other, ..legs[segment] }, from, segment);
-                let kind =
-                    if own || slides { SpecialKind::SlidingEdge } else { SpecialKind::Choice };
+                let edge = own || slides(legs[segment], segment);
+                let kind = if edge { SpecialKind::SlidingEdge } else { SpecialKind::Choice };
                 vec![(kind, segment, Some(legs[segment].rule), Margin::Choice { segment })]
             }
             Obstacle::Backwards { segment } => {
@@ -144,6 +126,44 @@ impl Along<'_> {
             }
             Obstacle::Idle { .. } => Vec::new(),
         }
+    }
+
+    /// What a condition that touches zero on a segment is called. Its rule may lead to sliding
+    /// along what is touched; or the segment slides, and the rule ends that.
+    pub fn touch(&self, point: &Point, segment: usize, slides_behind: bool) -> SpecialKind {
+        let own = self.equations.legs()[segment].mode;
+        let modes = self.orbits.system.modes.iter().enumerate().filter(|(mode, _)| *mode != own);
+        let mut ways = modes.flat_map(|(mode, it)| {
+            let rules = it.rules.iter().enumerate();
+            let leading = rules.filter(move |(_, rule)| {
+                let (above, below) = modes_after(rule, mode);
+                above == own || below == own
+            });
+            leading.map(move |(rule, _)| Leg { mode, rule, next: own })
+        });
+        let stays = |event: &Event| self.equations.is_at(event) && event.slides_behind();
+        if slides_behind {
+            SpecialKind::GrazingSliding
+        } else if ways.any(|way| self.at_both_ends(point, segment, way, stays)) {
+            SpecialKind::AddingSliding
+        } else {
+            SpecialKind::Grazing
+        }
+    }
+
+    /// Whether something holds of the rule of a leg in the states at both ends of a segment.
+    fn at_both_ends(
+        &self,
+        point: &Point,
+        segment: usize,
+        leg: Leg,
+        holds: impl Fn(&Event) -> bool,
+    ) -> bool {
+        let (orbit, own) = (&point.orbit, &point.orbit.segments[segment]);
+        [&own.state, &own.end].into_iter().all(|state| {
+            let at = (orbit.start, &state[..]);
+            holds(&Equations::event(&self.orbits.system, leg, &orbit.parameters, at))
+        })
     }
 
     /// A function that is positive where there is no obstacle, if it has a value.

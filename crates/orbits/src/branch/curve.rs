@@ -26,17 +26,18 @@ const LEAST_TURN: f64 = 0.95;
 
 /// Special orbits of one kind over two parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpecialCurve {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpecialCurve<P = usize, O = Orbit> {
     /// Their kind.
     pub kind: SpecialKind,
     /// The parameters, by their places in the system.
-    pub parameters: [usize; 2],
+    pub parameters: [P; 2],
     /// The window, an interval for each parameter.
     pub window: [[f64; 2]; 2],
     /// The orbits, in the order of the curve.
-    pub points: Vec<Orbit>,
+    pub points: Vec<O>,
     /// Orbits at which something else changes too, in the order of the curve.
-    pub meetings: Vec<Meeting>,
+    pub meetings: Vec<Meeting<O>>,
     /// Whether the curve comes back to its start.
     pub closed: bool,
     /// Why the curve is not complete.
@@ -45,7 +46,8 @@ pub struct SpecialCurve {
 
 /// An orbit that is special twice.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Meeting {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Meeting<O = Orbit> {
     /// What changes besides. On a curve of `neimark-sacker`, `fold` is the resonance 1:1 and `flip`
     /// the resonance 1:2.
     pub kind: SpecialKind,
@@ -54,7 +56,7 @@ pub struct Meeting {
     /// The number of points of the curve before it.
     pub behind: usize,
     /// The orbit.
-    pub orbit: Orbit,
+    pub orbit: O,
 }
 
 /// What is zero along a curve.

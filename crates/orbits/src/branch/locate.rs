@@ -24,7 +24,7 @@ impl Along<'_> {
             }
             let zero = self.zero(from, (length, one, other), |point| test.value(self, point))?;
             let Some((at, point)) = zero else { continue };
-            if let Some((kind, segment)) = test.kind(from, &point) {
+            if let Some((kind, segment)) = test.kind(self, from, &point) {
                 let rule = segment.map(|segment| self.equations.legs()[segment].rule);
                 found.push((at, self.special(kind, segment, rule, point)));
             }

@@ -128,6 +128,17 @@ impl Event {
         self.guard_by.rows(0, n).dot(&self.slopes) + self.guard_by[n]
     }
 
+    /// What the event makes of small differences: not finite at a graze.
+    pub fn saltation(&self) -> DMatrix<f64> {
+        let n = self.slopes.len();
+        let by = self.guard_by.rows(0, n).transpose();
+        let reset = self.after_by.columns(0, n);
+        let jump = &self.slopes_after - reset * &self.slopes - self.after_by.column(n);
+        // A clock acts at its time, and a rule that changes nothing leaves differences as they are.
+        let plain = by.amax() == 0.0 || jump.amax() == 0.0;
+        reset + if plain { DMatrix::zeros(n, n) } else { jump * by / self.rate() }
+    }
+
     /// Whether the formulas have the same values at another time.
     pub fn is_like(&self, later: &Self) -> bool {
         let own = [&self.after, &self.slopes, &self.slopes_after].map(DVector::as_slice);
