@@ -16,7 +16,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native, _orbits
+from stickslip import _attractors, _native, _orbits
+from stickslip._attractors import Basins, Diagram, Exponents
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named

@@ -5,7 +5,9 @@
 //! state, away from zeros of conditions, however unstable the orbit is. The rules that act must be
 //! those of the itinerary, at their times, and lead to its modes.
 
-use stickslip_expression::{Compiled, InvalidValue, Next, Recording, Rule, Runnable, System, Trigger};
+use stickslip_expression::{
+    Compiled, InvalidValue, Next, Recording, Rule, Runnable, System, Trigger,
+};
 use stickslip_solver::dynamic::{DynamicSwitch, ReadableDynamic};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
@@ -166,7 +168,7 @@ fn obstacle(
 }
 
 /// Whether a rule changes nothing.
-fn is_note(rule: &Rule) -> bool {
+pub(crate) fn is_note(rule: &Rule) -> bool {
     rule.next == Next::Stay
         && rule.changes.is_empty()
         && rule.rest.is_none()

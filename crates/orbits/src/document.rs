@@ -217,9 +217,7 @@ impl Document<BranchRecord> {
         let system = orbits.system();
         let special = |it: &SpecialOrbit| {
             let mode = it.segment.map(|segment| it.orbit.segments[segment].leg.mode);
-            let name = |(mode, place): (usize, usize)| {
-                system.modes[mode].rules[place].name(place)
-            };
+            let name = |(mode, place): (usize, usize)| system.modes[mode].rules[place].name(place);
             let rule = RuleRecord { rule: mode.zip(it.rule).map(name), place: it.rule };
             let SpecialOrbit { kind, value, behind, segment, .. } = *it;
             let orbit = OrbitRecord::new(system, &it.orbit);

@@ -21,7 +21,7 @@ use stickslip_solver::{GivenValue, Options};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, require_of};
 use event::by_each;
-pub(crate) use event::{Event, EventFormulas};
+pub(crate) use event::{Event, EventFormulas, rate};
 use flow::Flown;
 pub(crate) use flow::{Flow, enlarge};
 

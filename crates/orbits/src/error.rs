@@ -91,6 +91,13 @@ pub enum OrbitError {
     },
 }
 
+impl OrbitError {
+    /// There is no orbit, and no segment where it fails.
+    pub(crate) const fn nowhere(reason: &'static str) -> Self {
+        Self::NotFound { reason, segment: 0, update: f64::NAN }
+    }
+}
+
 fn not_settled(events: usize, tolerance: f64, outcome: Outcome) -> String {
     match outcome {
         Outcome::Zeno { .. } | Outcome::EndedByGuard { .. } => ending(outcome),

@@ -110,6 +110,29 @@ impl Orbits {
         self.compiled.with(parameters)?.starting(guess.mode, guess.time, guess.state)
     }
 
+    /// Refuses what is not the place of a parameter.
+    pub(crate) fn require_parameter(&self, place: usize) -> Result<(), InvalidValue> {
+        let count = self.system.parameters.len();
+        let expected = format!("the place of one of {count} parameters");
+        InvalidValue::check("the parameter", place, expected, place < count)
+    }
+
+    /// Refuses a range of a parameter in which its value at an orbit does not lie.
+    pub(crate) fn require_range(
+        &self,
+        orbit: &Orbit,
+        place: usize,
+        [low, high]: [f64; 2],
+    ) -> Result<(), InvalidValue> {
+        self.require_parameter(place)?;
+        let (name, value) = (&self.system.parameters[place].name, orbit.parameters[place]);
+        let ordered = low < high && low.is_finite() && high.is_finite();
+        let range = format!("the range of {name}");
+        InvalidValue::check(range, [low, high], "LO:HI, finite, with LO < HI", ordered)?;
+        let expected = format!("a value in the range {low:?}:{high:?}");
+        InvalidValue::check(name.clone(), value, expected, (low..=high).contains(&value))
+    }
+
     /// What the rules of an itinerary do from its start.
     fn followed(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Draft, OrbitError> {
         let runnable = self.start(parameters, guess)?;

@@ -98,6 +98,11 @@ impl Orbit {
         self.verdict == Verdict::Admissible
     }
 
+    /// The time at the start of a segment, or at the end behind the last one.
+    pub(crate) fn time(&self, segment: usize) -> f64 {
+        self.start + self.segments[..segment].iter().map(|it| it.duration).sum::<f64>()
+    }
+
     /// Whether all multipliers are less than 1 in size.
     #[must_use]
     pub fn is_stable(&self) -> bool {

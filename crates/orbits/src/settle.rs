@@ -1,11 +1,12 @@
 //! Orbits from a run that settles: its last events repeat.
 
-use stickslip_expression::{InvalidValue, Next, Runnable, Trigger};
+use stickslip_expression::{InvalidValue, Runnable, Trigger};
 use stickslip_solver::dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, run_dynamic_with,
 };
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 
+use crate::admissible::is_note;
 use crate::equations::{Draft, enlarge, is_apart};
 use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
@@ -17,20 +18,30 @@ const MOST_EVENTS: usize = 400;
 /// How much repeated states may differ, of their size.
 const REPEATS: f64 = 1e-4;
 
-/// A run with its last events, without those that change nothing.
+/// A run with its last events, without those that change nothing if there are others.
 pub(crate) struct Settling {
     pub run: DynamicRun<usize>,
     pub last: Vec<DynamicSwitch<usize>>,
-    /// The largest sizes of components in the second half.
-    pub sizes: Vec<f64>,
+    /// The largest sizes of components in the whole time, and in its second half.
+    pub sizes: [Vec<f64>; 2],
 }
 
 /// What is seen of a run.
 struct Watch {
     events: Vec<DynamicSwitch<usize>>,
-    sizes: Vec<f64>,
-    /// When sizes begin to count.
-    from: f64,
+    sizes: [Vec<f64>; 2],
+    /// The middle of the time.
+    middle: f64,
+}
+
+impl Watch {
+    fn see(&mut self, s: f64, state: &[f64]) {
+        let [whole, late] = &mut self.sizes;
+        enlarge(whole, state);
+        if s >= self.middle {
+            enlarge(late, state);
+        }
+    }
 }
 
 impl DynamicObserver<usize> for Watch {
@@ -40,12 +51,10 @@ impl DynamicObserver<usize> for Watch {
         self.events.push(event.to_switch());
     }
     fn on_segment(&mut self, _: usize, dense: &DynamicDense<'_>) {
-        if dense.start() + dense.size() >= self.from {
-            enlarge(&mut self.sizes, dense.coefficients());
-        }
+        self.see(dense.start(), dense.coefficients());
     }
-    fn on_end(&mut self, _: usize, _: f64, state: &[f64]) {
-        enlarge(&mut self.sizes, state);
+    fn on_end(&mut self, _: usize, s: f64, state: &[f64]) {
+        self.see(s, state);
     }
 }
 
@@ -81,16 +90,19 @@ impl Orbits {
         options: &Options,
     ) -> Result<Settling, RunError> {
         let start = runnable.start();
-        let (sizes, from) = (vec![0.0; start.state.len()], start.s + 0.5 * time);
-        let mut watch = Watch { events: Vec::new(), sizes, from };
+        let sizes = [0, 1].map(|_| vec![0.0; start.state.len()]);
+        let mut watch = Watch { events: Vec::new(), sizes, middle: start.s + 0.5 * time };
         let (pair, end) = (EmbeddedPair::Dop853, start.s + time);
         let run = run_dynamic_with(pair, runnable, start, end, options, &mut watch)?;
         let Watch { events: mut last, sizes, .. } = watch;
-        last.retain(|event| {
+        let acts = |event: &DynamicSwitch<usize>| {
             let rule = &self.system.modes[event.from].rules[event.guard];
-            let notes = rule.next == Next::Stay && rule.changes.is_empty();
-            !notes || matches!(rule.trigger, Trigger::Every { .. })
-        });
+            !is_note(rule) || matches!(rule.trigger, Trigger::Every { .. })
+        };
+        // Where nothing else happens, rules that change nothing say where an orbit starts.
+        if last.iter().any(acts) {
+            last.retain(acts);
+        }
         last.drain(..last.len().saturating_sub(MOST_EVENTS));
         Ok(Settling { run, last, sizes })
     }

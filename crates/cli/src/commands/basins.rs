@@ -89,9 +89,10 @@ pub fn run(arguments: &BasinsArguments) -> Result<(), Failure> {
         stored.push(write_table(path, [&x.name, &y.name], &found)?);
     }
     if let Some(plot) = plot {
-        let labels = found.labels.iter().map(|label| {
-            label.and_then(|label| i32::try_from(label + 1).ok()).unwrap_or(-1)
-        });
+        let labels = found
+            .labels
+            .iter()
+            .map(|label| label.and_then(|label| i32::try_from(label + 1).ok()).unwrap_or(-1));
         let labels: Vec<i32> = labels.collect();
         let panel = MapPanel {
             heading: "number of the attractor",
@@ -114,9 +115,8 @@ pub fn run(arguments: &BasinsArguments) -> Result<(), Failure> {
 fn attractors(out: &mut dyn Write, started: &StartedSystem, found: &Basins) -> io::Result<()> {
     let system = started.orbits.system();
     let mut rows = vec![["attractor", "runs", "what it is", "where"].map(str::to_owned)];
-    let runs = |label: Option<usize>| {
-        found.labels.iter().filter(|it| **it == label).count().to_string()
-    };
+    let runs =
+        |label: Option<usize>| found.labels.iter().filter(|it| **it == label).count().to_string();
     let at = |mode: usize, state: &[f64]| {
         let parts = system.components.iter().zip(state);
         let parts = parts.map(|(it, value)| format!("{} = {}", it.name, number(*value)));

@@ -86,8 +86,7 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
     let system = started.orbits.system();
     let show = arguments.show.iter().map(|name| component(system, "--show", name));
     let show = show.collect::<Result<Vec<_>, _>>()?;
-    let section =
-        Section { rule: &arguments.rule, skip: arguments.skip, time: arguments.length };
+    let section = Section { rule: &arguments.rule, skip: arguments.skip, time: arguments.length };
     let (orbits, guess) = (&started.orbits, started.guess());
     let mut lines = Vec::new();
     let (found, axis) = if let Some(over) = &arguments.over {
@@ -97,9 +96,8 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
             over.range.low * (1.0 - part) + over.range.high * part
         });
         let values: Vec<f64> = values.collect();
-        let diagram = || {
-            orbits.diagram(&started.parameters, &guess, (parameter, &values), &section)
-        };
+        let diagram =
+            || orbits.diagram(&started.parameters, &guess, (parameter, &values), &section);
         let found = pool.install(diagram).map_err(failure)?;
         lines.push(("values", values.len().to_string()));
         (found, Some(&*over.name))
@@ -128,7 +126,12 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
     let mut troubled = found.iter().flatten().filter_map(|column| {
         column.trouble.as_ref().map(|reason| format!("at {:?}: {reason}", column.value))
     });
-    let first = troubled.next().map(|it| format!("{}, {it}", counted(1 + troubled.count(), "run has no result", "runs have no result")));
+    let first = troubled.next().map(|it| {
+        format!(
+            "{}, {it}",
+            counted(1 + troubled.count(), "run has no result", "runs have no result")
+        )
+    });
     Failure::if_doubtful(table.unwrap_or(&from.system), "diagram is", first)
 }
 
@@ -184,7 +187,9 @@ fn draw(
         (None, None) => (format!("{}, once before", name(first)), name(first)),
     };
     let mut series = Vec::new();
-    for (columns, (label, colour)) in found.iter().zip([("upwards", BLUE), ("downwards", VERMILION)]) {
+    for (columns, (label, colour)) in
+        found.iter().zip([("upwards", BLUE), ("downwards", VERMILION)])
+    {
         let points = columns.iter().flat_map(|Column { value, points, .. }| {
             let before = std::iter::once(None).chain(points.iter().map(Some));
             points.iter().zip(before).filter_map(move |(point, before)| {

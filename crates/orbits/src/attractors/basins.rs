@@ -1,12 +1,11 @@
 //! Basins over two initial values: where runs lead to, told apart.
 
 use rayon::prelude::*;
-use stickslip_expression::{InvalidValue, Inputs, Program, Runnable};
+use stickslip_expression::{Inputs, InvalidValue, Program, Runnable};
 use stickslip_solver::Outcome;
 
 use super::coarse;
 use crate::equations::{Draft, is_apart};
-use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::orbit::Orbit;
 use crate::settle::require_time;
@@ -150,7 +149,8 @@ impl Orbits {
     ) -> Fate {
         let Ok(found) = self.settling(start, time, &coarse()) else { return Fate::Unknown };
         let run = &found.run;
-        sizes.clone_from(&found.sizes);
+        let [whole, late] = &found.sizes;
+        sizes.clone_from(late);
         if let Outcome::EndedByGuard { guard } = run.outcome {
             return Fate::Other(Attractor::End { mode: run.mode, rule: guard });
         }
@@ -160,7 +160,7 @@ impl Orbits {
         let mut moves = vec![f64::NAN; run.state.len()];
         slopes[run.mode].run(run.s, &run.state, &mut moves);
         let is_quiet = found.last.last().is_none_or(|event| event.s < run.s - 0.5 * time);
-        let mut parts = moves.iter().zip(&found.sizes);
+        let mut parts = moves.iter().zip(whole);
         let is_still = parts.all(|(slope, size)| (slope * time).abs() <= SAME * size);
         if run.outcome == Outcome::ReachedEnd && is_quiet && is_still {
             Fate::Other(Attractor::Rest { mode: run.mode, state: run.state.clone() })
@@ -202,12 +202,7 @@ impl Orbits {
     }
 }
 
-fn are_near(
-    one: &[f64],
-    other: &[f64],
-    sizes: &[f64],
-    apart: impl Fn(usize) -> bool,
-) -> bool {
+fn are_near(one: &[f64], other: &[f64], sizes: &[f64], apart: impl Fn(usize) -> bool) -> bool {
     let parts = one.iter().zip(other).zip(sizes).enumerate();
     parts.into_iter().all(|(k, ((x, y), size))| (x - y).abs() <= SAME * size || apart(k))
 }

@@ -182,9 +182,8 @@ impl<'a> Carrier<'a> {
         least: f64,
     ) -> Result<Vec<f64>, OrbitError> {
         let Self { orbits, parameters, graph, .. } = self;
-        let flow = self.flows.entry(mode).or_insert_with(|| {
-            Flow::new(graph, &orbits.system, mode, &[])
-        });
+        let flow =
+            self.flows.entry(mode).or_insert_with(|| Flow::new(graph, &orbits.system, mode, &[]));
         let flown = flow.run(parameters, (s, state), duration, &orbits.options);
         let flown = flown.map_err(|error| OrbitError::Run { segment: 0, error })?;
         let by = flown.by.select_rows(&self.moving).select_columns(&self.moving);
@@ -202,9 +201,10 @@ impl<'a> Carrier<'a> {
     /// Carries the directions across an event.
     fn cross(&mut self, leg: Leg, event: &DynamicSwitch<usize>) -> Result<(), OrbitError> {
         let Self { orbits, parameters, graph, .. } = self;
-        let formulas = self.events.entry(leg).or_insert_with(|| {
-            EventFormulas::new(graph, &orbits.system, leg, None, &[])
-        });
+        let formulas = self
+            .events
+            .entry(leg)
+            .or_insert_with(|| EventFormulas::new(graph, &orbits.system, leg, None, &[]));
         let across = formulas.at(parameters, event.s, &event.before).saltation();
         let across = across.select_rows(&self.moving).select_columns(&self.moving);
         if across.iter().any(|it| !it.is_finite()) {
@@ -246,5 +246,7 @@ fn orthogonal(columns: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
 
 /// The largest and the least size.
 fn extremes(sizes: &[f64]) -> (f64, f64) {
-    sizes.iter().fold((0.0, f64::INFINITY), |(most, least), size| (most.max(*size), least.min(*size)))
+    sizes
+        .iter()
+        .fold((0.0, f64::INFINITY), |(most, least), size| (most.max(*size), least.min(*size)))
 }

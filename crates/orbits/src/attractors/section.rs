@@ -75,9 +75,7 @@ impl Orbits {
         section: &Section<'_>,
     ) -> Result<[Vec<Column>; 2], OrbitError> {
         let places = self.places(section)?;
-        let count = self.system.parameters.len();
-        let expected = format!("the place of one of {count} parameters");
-        InvalidValue::check("the parameter", parameter, expected, parameter < count)?;
+        self.require_parameter(parameter)?;
         let chain = |values: &mut dyn Iterator<Item = f64>| {
             let (mut parameters, mut columns) = (parameters.to_vec(), Vec::new());
             let mut last: Option<DynamicRun<usize>> = None;
@@ -142,9 +140,9 @@ impl Orbits {
         let from = runnable.start().s + section.skip;
         let end = from + section.time;
         let run = runnable.events(EmbeddedPair::Dop853, end, &coarse(), &mut events);
-        let own = events.into_iter().filter(|event| {
-            event.s >= from && places.contains(&(event.from % modes, event.guard))
-        });
+        let own = events
+            .into_iter()
+            .filter(|event| event.s >= from && places.contains(&(event.from % modes, event.guard)));
         points.extend(own.map(|event| SectionPoint { s: event.s, state: event.before }));
         run.map(|run| DynamicRun { mode: run.mode % modes, ..run })
     }

@@ -1,11 +1,11 @@
 //! Where a system begins or ceases to follow the orbits of a branch.
 
-use stickslip_expression::{Formula, Graph, Inputs, Program, Rule, Trigger, Variable};
+use stickslip_expression::{Inputs, Program, Rule, Trigger};
 use stickslip_solver::{Direction, EmbeddedPair};
 
 use super::point::{Along, Point};
 use super::{SpecialKind, SpecialOrbit};
-use crate::equations::{Equations, Event};
+use crate::equations::{Equations, Event, rate};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after};
 use crate::orbit::{Obstacle, Verdict};
@@ -173,17 +173,12 @@ impl Along<'_> {
             Margin::Choice { segment } => Some(point.evaluation.ends[segment].event.choice),
             Margin::Duration { segment } => Some(orbit.segments[segment].duration),
             Margin::AtEnd { segment, rule } => {
-                let s: f64 = orbit.segments[..=segment].iter().map(|it| it.duration).sum();
-                self.condition(
-                    point,
-                    (segment, rule),
-                    (orbit.start + s, &orbit.segments[segment].end),
-                )
+                let end = &orbit.segments[segment].end;
+                self.condition(point, (segment, rule), (orbit.time(segment + 1), end))
             }
             Margin::AtStart { segment, rule } => {
-                let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
                 let state = &orbit.segments[segment].state;
-                self.condition(point, (segment, rule), (orbit.start + s, state))
+                self.condition(point, (segment, rule), (orbit.time(segment), state))
             }
             Margin::Inner { segment, rule } => self.least_extremum(point, (segment, rule)),
         }
@@ -222,9 +217,7 @@ impl Along<'_> {
         let extremum = Rule::new(Trigger::When(rate, Direction::Either));
         alone.modes[leg.mode].rules = vec![extremum];
         let orbit = &point.orbit;
-        let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
-        let own = &orbit.segments[segment];
-        let start = orbit.start + s;
+        let (own, start) = (&orbit.segments[segment], orbit.time(segment));
         let runnable = alone.with(&orbit.parameters).ok()?;
         let runnable = runnable.starting(Some(leg.mode), Some(start), Some(&own.state)).ok()?;
         let mut events = Vec::new();
@@ -254,13 +247,4 @@ pub(super) enum Margin {
     Choice { segment: usize },
     /// The duration of a segment.
     Duration { segment: usize },
-}
-
-/// The rate of a formula along slopes.
-fn rate(graph: &mut Graph, formula: Formula, slopes: &[Formula]) -> Formula {
-    graph.slope(formula, &mut |graph, variable| match variable {
-        Variable::Time => graph.constant(1.0),
-        Variable::Component(place) => slopes[place as usize],
-        Variable::Parameter(_) => graph.constant(0.0),
-    })
 }

@@ -30,11 +30,12 @@ impl Orbits {
         let name = "the distance from a special orbit";
         InvalidValue::check(name, aside, "above 0, to 0.5", accepted)?;
         self.compiled.with(&special.orbit.parameters)?;
-        let count = self.system.parameters.len();
-        let expected = format!("the place of one of {count} parameters");
-        InvalidValue::check("the parameter", parameter, expected, parameter < count)?;
+        self.require_parameter(parameter)?;
         let one = special.orbit.draft();
-        let value = special.orbit.parameters[parameter].abs();
+        self.compiled.with(&beside.parameters)?;
+        // A special orbit may be where the parameter is 0, and its neighbour is not.
+        let of = |orbit: &Orbit| orbit.parameters[parameter].abs();
+        let value = of(&special.orbit).max(of(beside));
         let active = [(parameter, if value > 0.0 { value } else { 1.0 })];
         let single = Equations::new(&self.system, one.clone(), &active, &self.options)?;
         let place = single.place(&one);
@@ -63,10 +64,10 @@ impl Orbits {
                 let rows = svd.v_t.into_iter().flat_map(|rows| {
                     order[..2].iter().map(|row| rows.row(*row).transpose()).collect::<Vec<_>>()
                 });
-                let [u, v] = <[DVector<f64>; 2]>::try_from(rows.collect::<Vec<_>>())
-                    .map_err(|_| nowhere())?;
+                let [u, v] =
+                    <[DVector<f64>; 2]>::try_from(rows.collect::<Vec<_>>()).map_err(|_| NOWHERE)?;
                 let across = known.dot(&v) * &u - known.dot(&u) * &v;
-                let direction = across.try_normalize(0.0).ok_or_else(nowhere)?;
+                let direction = across.try_normalize(0.0).ok_or(NOWHERE)?;
                 (one.clone(), moved(aside, &direction))
             }
             other => {
@@ -86,10 +87,7 @@ impl Orbits {
     }
 }
 
-fn nowhere() -> OrbitError {
-    let reason = "the neighbour does not say which branch is known";
-    OrbitError::NotFound { reason, segment: 0, update: f64::NAN }
-}
+const NOWHERE: OrbitError = OrbitError::nowhere("the neighbour does not say which branch is known");
 
 /// Two rounds, one after the other.
 fn joined(one: &Draft, other: &Draft) -> Draft {

@@ -70,11 +70,7 @@ impl EventFormulas {
         let next = &system.modes[leg.next].slopes;
         let behind: Vec<Formula> =
             next.iter().map(|&slope| graph.substituted(slope, &after)).collect();
-        let rate_after = graph.slope(guard, &mut |graph, variable| match variable {
-            Variable::Time => graph.constant(1.0),
-            Variable::Component(place) => next[place as usize],
-            Variable::Parameter(_) => graph.constant(0.0),
-        });
+        let rate_after = rate(graph, guard, next);
         let columns = n + 1 + active.len();
         let mut formulas = vec![guard];
         formulas.extend(by_each(graph, guard, n, active));
@@ -187,6 +183,15 @@ fn since_tick(graph: &mut Graph, period: Formula, phase: Formula, number: f64) -
     let ticks = graph.binary(Binary::Mul, number, period);
     let tick = graph.binary(Binary::Add, phase, ticks);
     graph.binary(Binary::Sub, time, tick)
+}
+
+/// The rate of a formula along slopes.
+pub(crate) fn rate(graph: &mut Graph, formula: Formula, slopes: &[Formula]) -> Formula {
+    graph.slope(formula, &mut |graph, variable| match variable {
+        Variable::Time => graph.constant(1.0),
+        Variable::Component(place) => slopes[place as usize],
+        Variable::Parameter(_) => graph.constant(0.0),
+    })
 }
 
 /// The derivatives of a formula by each component, the time and some parameters.

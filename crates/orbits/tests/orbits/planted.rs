@@ -130,3 +130,20 @@ fn a_run_that_comes_to_rest_has_no_orbit() {
     // √2 (1 + 2 (1/2 + 1/4 + …)).
     assert!(said.contains("its events accumulate at t = 4.2426406"), "{said}");
 }
+
+/// The period of the clock changes along this branch. It folds at ω² = π(1 − r)/((1 + r)A).
+#[test]
+fn a_fold_over_the_period_of_a_clock() {
+    let system = System::parse(crate::ball::TEXT).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["period", "bounce"], ..Guess::default() };
+    let orbit = orbits.find(&system.values(), &guess).expect("an orbit");
+    let branch = orbits.branch(&orbit, 1, [4.0, 7.0], &BranchOptions::default()).expect("it");
+    let folds = branch.specials.iter().filter(|it| it.kind == SpecialKind::Fold);
+    let folds: Vec<f64> = folds.map(|it| it.value).collect();
+    let exact = (PI * 0.3 / (1.7 * 0.02)).sqrt();
+    assert!(folds.len() == 1 && (folds[0] - exact).abs() < 1e-10, "{folds:?} {exact}");
+    assert!(
+        branch.points.iter().all(|it| { (it.period - 2.0 * PI / it.parameters[1]).abs() < 1e-12 })
+    );
+}

@@ -1,7 +1,7 @@
 //! Systems with which other programs are shown, and what is published of them.
 
 use stickslip_expression::System;
-use stickslip_orbits::{BranchOptions, Guess, Orbit, Orbits, SpecialKind};
+use stickslip_orbits::{Branch, BranchOptions, Guess, Orbit, Orbits, SpecialKind};
 
 use crate::branches::values;
 
@@ -20,28 +20,33 @@ fn asymmetry(orbit: &Orbit) -> f64 {
 fn a_bang_bang_duffing_oscillator() {
     let system = System::parse(BANG_BANG).expect("a system");
     let orbits = Orbits::new(&system).expect("orbits");
-    // Ten periods from rest lead near an orbit that is not symmetric, as published.
     let orbit = orbits.settled(&system.values(), &Guess::default(), 400.0).expect("an orbit");
-    assert!(asymmetry(&orbit) > 0.1 && orbit.segments.len() == 2, "{orbit:?}");
+    assert!(asymmetry(&orbit) < 1e-9 && orbit.is_stable(), "{orbit:?}");
+    // "A primary branch of two-segment periodic orbits", with saddle-nodes and branch points.
     let options = BranchOptions::default();
-    let branch = orbits.branch(&orbit, 4, [0.8, 1.5], &options).expect("a branch");
-    assert_eq!(branch.objection, None);
-    println!("{:?}", branch.specials.iter().map(|it| (it.kind, it.value)).collect::<Vec<_>>());
-    // Along the branch the symmetry is gained at a branch point, behind which the mirror images
-    // follow: at its orbit, the state turns its sign in half a period.
-    let meets = branch.specials.iter().filter(|it| it.kind == SpecialKind::BranchPoint);
+    let primary = orbits.branch(&orbit, 4, [0.8, 1.5], &options).expect("a branch");
+    let kinds =
+        |branch: &Branch| branch.specials.iter().map(|it| (it.kind, it.value)).collect::<Vec<_>>();
+    println!("primary {:?} {:?}", kinds(&primary), primary.objection);
+    assert_eq!(primary.objection, None);
+    assert!(primary.points.iter().all(|it| asymmetry(it) < 1e-7));
+    let meets = primary.specials.iter().filter(|it| it.kind == SpecialKind::BranchPoint);
     let meets: Vec<_> = meets.collect();
-    let symmetric = meets.iter().find(|it| asymmetry(&it.orbit) < 1e-8).expect("a branch point");
-    // The other branch there is symmetric throughout.
-    let beside = &branch.points[symmetric.behind - 1];
-    assert!(asymmetry(beside) > 1e-6);
-    let other = orbits.switched(symmetric, beside, 4, 0.02).expect("the other branch");
-    assert!(asymmetry(&other) < 1e-9, "{other:?}");
-    let primary = orbits.branch(&other, 4, [0.8, 1.5], &options).expect("a branch");
-    assert!(primary.points.iter().all(|it| asymmetry(it) < 1e-8));
-    let again = values(&primary, SpecialKind::BranchPoint);
-    let apart = again.iter().map(|it| (it - symmetric.value).abs()).fold(1.0, f64::min);
-    assert!(apart < 1e-8, "{again:?} {}", symmetric.value);
+    assert!(!meets.is_empty() && !values(&primary, SpecialKind::Fold).is_empty());
+    // "Several secondary branches emanating from branch points", with period doublings. They
+    // consist of pairs of mirror images, so that the parameter turns at the branch point.
+    let beside = &primary.points[meets[0].behind - 1];
+    let other = orbits.switched(meets[0], beside, 4, 0.02).expect("the other branch");
+    assert!(asymmetry(&other) > 1e-3, "{other:?}");
+    let secondary = orbits.branch(&other, 4, [0.5, 1.5], &options).expect("a branch");
+    println!("secondary {:?} {:?}", kinds(&secondary), secondary.objection);
+    let again = values(&secondary, SpecialKind::BranchPoint);
+    let apart = again.iter().map(|it| (it - meets[0].value).abs()).fold(1.0, f64::min);
+    assert!(apart < 1e-8, "{again:?} {}", meets[0].value);
+    let flip = secondary.specials.iter().find(|it| it.kind == SpecialKind::Flip);
+    let flip = flip.expect("a period doubling");
+    let doubled = orbits.switched(flip, &secondary.points[flip.behind - 1], 4, 0.02);
+    assert_eq!(doubled.expect("an orbit").segments.len(), 4);
 }
 
 /// The test `IF_squarespike_model.py` of PyDSTool (Clewley): v' = (I − g(v − v₀))/C up to −65, a
@@ -68,4 +73,22 @@ fn an_integrate_and_fire_neuron() {
         let exact = 1.5 + 10.0 * ((rest + 97.0) / (rest + 65.0)).ln();
         assert!((orbit.period - exact).abs() < 1e-10 * exact, "{orbit:?}");
     }
+}
+
+/// The van der Pol oscillator with μ = 1 has no events. A rule that changes nothing says where its
+/// orbit starts. Its period is known to many digits (Andersen and Geer, *SIAM J. Appl. Math.* 42,
+/// 678, 1982: 6.6632868593…).
+#[test]
+fn an_oscillator_without_events() {
+    let text = "parameter mu = 1\nstate x = 2, v = 0\nx' = v\nv' = mu*(1 - x^2)*v - x\nwhen v \
+                falls through 0 \"top\"\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let orbit = orbits.settled(&[1.0], &Guess::default(), 100.0).expect("an orbit");
+    assert!((orbit.period - 6.663286859323).abs() < 1e-11, "{orbit:?}");
+    assert!(orbit.is_admissible() && orbit.is_stable() && orbit.segments.len() == 1);
+    let found = orbits.exponents(&[1.0], &Guess::default(), 100.0, 1000.0).expect("exponents");
+    let exact = orbit.largest_multiplier().ln() / orbit.period;
+    let errors = [found.values[0], found.values[1] - exact];
+    assert!(errors.iter().all(|error| error.abs() < 2e-3), "{found:?} {exact}");
 }
