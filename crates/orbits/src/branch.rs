@@ -4,13 +4,14 @@
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
-//! `change` finds where the verdict changes, `curve` follows special orbits over two parameters,
+//! `meet` finds where branches meet, `change` finds where the verdict changes, `curve` follows special orbits over two parameters,
 //! and `switched` goes over to another branch.
 
 mod borders;
 mod change;
 pub(crate) mod curve;
 mod locate;
+mod meet;
 mod point;
 mod switched;
 mod test;

@@ -78,7 +78,8 @@ fn table(out: &mut dyn Write, found: &FoundOrbit, document: &Document<OneOrbit>)
     writeln!(out)?;
     let header = ["segment", "mode", "until", "duration"].map(str::to_owned);
     let rows = orbit.segments.iter().enumerate().map(|(place, it)| {
-        [place.to_string(), it.mode.clone(), it.rule.clone(), number(it.duration)]
+        let leg = &it.leg;
+        [place.to_string(), leg.mode.clone(), leg.rule.clone(), number(it.duration)]
     });
     text::aligned(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())?;
     writeln!(out)?;

@@ -65,28 +65,36 @@ impl Orbits {
         let events = found.events;
         let legs: Vec<Leg> = events.iter().map(leg).collect();
         let moving = (0..start.state.len()).filter(|k| !is_apart(&self.system, &legs, *k));
-        let mut carrier = Carrier::new(self, parameters, moving.collect());
-        let mut marks = Marks::new([from, from + 0.5 * time]);
-        let (mut mode, mut s, mut state) = (start.mode, start.s, start.state.to_vec());
-        let ends = events.iter().map(|it| (it.s, Some(it))).chain([(run.s, None)]);
-        for (end, event) in ends {
-            let parts = ((end - s) / (PIECE * time)).ceil().max(1.0);
-            let duration = (end - s) / parts;
-            for _ in 0..parts as usize {
-                marks.see(s, &carrier);
-                state = carrier.flow(mode, (s, &state), duration, PIECE * PIECE * time)?;
-                s += duration;
-            }
-            s = end;
-            if let Some(event) = event {
-                marks.see(s, &carrier);
-                carrier.cross(leg(event), event)?;
-                (mode, state) = (event.to, event.after.clone());
-            }
+        let moving: Vec<usize> = moving.collect();
+        if moving.is_empty() {
+            return Ok(Exponents { values: Vec::new(), spread: 0.0, events: events.len() });
         }
-        marks.list.push((s, carrier.growth));
-        let events = events.iter().filter(|event| event.s >= from).count();
-        Ok(marks.exponents(events))
+        let mut carrier = Carrier::new(self, parameters, moving);
+        let (mut mode, mut s, mut state) = (start.mode, start.s, start.state.to_vec());
+        // What had grown by how much at the start, in the middle and at the end of the time.
+        let mut marks = Vec::new();
+        let stops = [from, from + 0.5 * time, run.s];
+        let mut ahead = events.iter().peekable();
+        for stop in stops {
+            while s < stop || ahead.peek().is_some_and(|event| event.s < stop) {
+                let event = ahead.next_if(|event| event.s < stop);
+                let end = event.map_or(stop, |event| event.s);
+                let parts = ((end - s) / (PIECE * time)).ceil().max(1.0);
+                let duration = (end - s) / parts;
+                for _ in 0..parts as usize {
+                    state = carrier.flow(mode, (s, &state), duration, PIECE * PIECE * time)?;
+                    s += duration;
+                }
+                s = end;
+                if let Some(event) = event {
+                    carrier.cross(leg(event), event)?;
+                    (mode, state) = (event.to, event.after.clone());
+                }
+            }
+            marks.push((s, carrier.growth.clone()));
+        }
+        let events = events.iter().filter(|event| (from..run.s).contains(&event.s)).count();
+        Ok(exponents(&marks, events))
     }
 }
 
@@ -106,46 +114,24 @@ impl DynamicObserver<usize> for Switches {
     }
 }
 
-/// How much directions had grown at some times.
-struct Marks {
-    wanted: std::array::IntoIter<f64, 2>,
-    next: Option<f64>,
-    list: Vec<(f64, Vec<f64>)>,
-}
-
-impl Marks {
-    fn new(wanted: [f64; 2]) -> Self {
-        let mut wanted = wanted.into_iter();
-        Self { next: wanted.next(), wanted, list: Vec::new() }
-    }
-
-    fn see(&mut self, s: f64, carrier: &Carrier<'_>) {
-        if self.next.is_some_and(|next| s >= next) {
-            self.list.push((s, carrier.growth.clone()));
-            self.next = self.wanted.next();
-        }
-    }
-
-    fn exponents(&self, events: usize) -> Exponents {
-        let rates = |(from, before): &(f64, Vec<f64>), (to, after): &(f64, Vec<f64>)| {
-            let all = before.iter().zip(after).map(|(before, after)| match *after {
-                f64::NEG_INFINITY => f64::NEG_INFINITY,
-                after => (after - before) / (to - from),
-            });
-            let mut all: Vec<f64> = all.collect();
-            all.sort_by(|one, other| other.total_cmp(one));
-            all
-        };
-        let (first, last) = (&self.list[0], &self.list[self.list.len() - 1]);
-        let halves = self.list.windows(2).map(|pair| rates(&pair[0], &pair[1]));
-        let values = rates(first, last);
-        let differences = halves.flat_map(|half| {
-            let own = values.iter().zip(half).filter(|(value, _)| value.is_finite());
-            own.map(|(value, half)| (value - half).abs()).collect::<Vec<_>>()
+/// Exponents from what directions had grown by at some times.
+fn exponents(marks: &[(f64, Vec<f64>)], events: usize) -> Exponents {
+    let rates = |(from, before): &(f64, Vec<f64>), (to, after): &(f64, Vec<f64>)| {
+        let all = before.iter().zip(after).map(|(before, after)| match *after {
+            f64::NEG_INFINITY => f64::NEG_INFINITY,
+            after => (after - before) / (to - from),
         });
-        let spread = differences.fold(0.0, f64::max);
-        Exponents { spread, values, events }
-    }
+        let mut all: Vec<f64> = all.collect();
+        all.sort_by(|one, other| other.total_cmp(one));
+        all
+    };
+    let values = rates(&marks[0], &marks[marks.len() - 1]);
+    let halves = marks.windows(2).map(|pair| rates(&pair[0], &pair[1]));
+    let differences = halves.flat_map(|half| {
+        let own = values.iter().zip(half).filter(|(value, _)| value.is_finite());
+        own.map(|(value, half)| (value - half).abs()).collect::<Vec<_>>()
+    });
+    Exponents { spread: differences.fold(0.0, f64::max), values, events }
 }
 
 /// Directions that are carried along a run.

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use stickslip_expression::InvalidValue;
 
-use super::borders::null_vectors;
+use super::borders::{null_vectors, plane};
 use super::{SpecialKind, SpecialOrbit};
 use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
@@ -54,18 +54,7 @@ impl Orbits {
                 let expected = "an orbit of the branch beside the special one";
                 InvalidValue::check("the neighbour", other.legs.len(), expected, accepted)?;
                 let known = single.place(&other) - &place;
-                // Both branches lie in the plane that the derivatives map to zero.
-                let square = slopes.insert_row(single.count(), 0.0);
-                let svd = square.svd(false, true);
-                let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
-                order.sort_by(|one, other| {
-                    svd.singular_values[*one].total_cmp(&svd.singular_values[*other])
-                });
-                let rows = svd.v_t.into_iter().flat_map(|rows| {
-                    order[..2].iter().map(|row| rows.row(*row).transpose()).collect::<Vec<_>>()
-                });
-                let [u, v] =
-                    <[DVector<f64>; 2]>::try_from(rows.collect::<Vec<_>>()).map_err(|_| NOWHERE)?;
+                let [u, v] = plane(&slopes).ok_or(NOWHERE)?;
                 let across = known.dot(&v) * &u - known.dot(&u) * &v;
                 let direction = across.try_normalize(0.0).ok_or(NOWHERE)?;
                 (one.clone(), moved(aside, &direction))

@@ -32,7 +32,7 @@ impl Test {
         let flip = Borders::of(&along.equations.returning(slopes, -1.0));
         let branch_point = Borders::of(&bordered_by_tangent(point));
         let fixed =
-            [Self::Fold, Self::Flip(flip), Self::BranchPoint(branch_point), Self::NeimarkSacker];
+            [Self::BranchPoint(branch_point), Self::Fold, Self::Flip(flip), Self::NeimarkSacker];
         fixed.into_iter().chain((0..point.evaluation.ends.len()).map(Self::Rate)).collect()
     }
 
