@@ -81,9 +81,11 @@ impl Orbits {
                 let end = event.map_or(stop, |event| event.s);
                 let parts = ((end - s) / (PIECE * time)).ceil().max(1.0);
                 let duration = (end - s) / parts;
-                for _ in 0..parts as usize {
-                    state = carrier.flow(mode, (s, &state), duration, PIECE * PIECE * time)?;
-                    s += duration;
+                let mut part = 0.0;
+                while part < parts {
+                    let at = (s + part * duration, &state[..]);
+                    state = carrier.flow(mode, at, duration, PIECE * PIECE * time)?;
+                    part += 1.0;
                 }
                 s = end;
                 if let Some(event) = event {
@@ -175,7 +177,8 @@ impl<'a> Carrier<'a> {
         let by = flown.by.select_rows(&self.moving).select_columns(&self.moving);
         let (directions, sizes) = orthogonal(&by * &self.directions);
         let (most, least_size) = extremes(&sizes);
-        if !(most < MOST_GROWTH * least_size) && duration > least {
+        let is_little = most < MOST_GROWTH * least_size;
+        if !is_little && duration > least {
             let half = 0.5 * duration;
             let middle = self.flow(mode, (s, state), half, least)?;
             return self.flow(mode, (s + half, &middle), half, least);

@@ -24,16 +24,19 @@ impl Along<'_> {
             if (one < 0.0) == (other < 0.0) || other == 0.0 {
                 continue;
             }
-            let zero = match test {
-                Test::BranchPoint(_) => Some(self.meeting(from, length * one / (one - other))?),
-                _ => {
-                    let value = |point: &Point| test.value(self, point);
-                    match (self.zero(from, (length, one, other), value), &test) {
-                        // At a pitchfork the parameter may turn back.
-                        (Err(_), Test::Fold) if !found.is_empty() => None,
-                        (zero, _) => zero?,
-                    }
-                }
+            let value = |point: &Point| test.value(self, point);
+            let meets = match test {
+                Test::BranchPoint(_) => self.meeting(from, length, one / (one - other)).ok(),
+                _ => None,
+            };
+            let zero = match meets {
+                Some(meets) => Ok(Some(meets)),
+                None => self.zero(from, (length, one, other), value),
+            };
+            let zero = match (zero, &test) {
+                // At a pitchfork the parameter may turn back.
+                (Err(_), Test::Fold) if !found.is_empty() => None,
+                (zero, _) => zero?,
             };
             let Some((at, point)) = zero else { continue };
             let meets = found.iter().any(|(other, _)| (at - other).abs() <= BESIDE * length);

@@ -17,11 +17,16 @@ const APART: f64 = 1e-5;
 const PASSED: f64 = 1e-8;
 
 impl Along<'_> {
-    /// The point where another branch meets that of a point, about ahead of it by a length, and how
-    /// far ahead it is.
-    pub fn meeting(&self, from: &Point, length: f64) -> Result<(f64, Point), OrbitError> {
+    /// The point where another branch meets that of a point, within a length ahead of it and about
+    /// at a part of that length; and how far ahead it is.
+    pub fn meeting(
+        &self,
+        from: &Point,
+        length: f64,
+        part: f64,
+    ) -> Result<(f64, Point), OrbitError> {
         let (equations, count) = (self.equations, self.equations.count());
-        let start = &from.place + length * &from.tangent;
+        let start = &from.place + part * length * &from.tangent;
         let near = equations.at(&start)?.slopes;
         let across = null_vectors(&near).0;
         let [u, v] = plane(&near).ok_or(NOWHERE)?;
@@ -59,14 +64,16 @@ impl Along<'_> {
             }
             Ok((values, Some(slopes)))
         })?;
-        if found.at[count + 1].abs() > PASSED {
-            return Err(OrbitError::nowhere("two branches pass each other"));
-        }
         let place = found.at.rows(0, count + 1).into_owned();
+        let at = from.tangent.dot(&(&place - &from.place));
+        let is_there = found.at[count + 1].abs() <= PASSED && (0.0..=length).contains(&at);
+        if !is_there {
+            return Err(NOWHERE);
+        }
         let (evaluation, draft) = (equations.at(&place)?, equations.draft(&place));
         let orbit = self.orbits.orbit(equations, &draft, &evaluation, found.error)?;
         let tangent = from.tangent.clone();
-        Ok((tangent.dot(&(&place - &from.place)), Point { place, tangent, evaluation, orbit }))
+        Ok((at, Point { place, tangent, evaluation, orbit }))
     }
 }
 
