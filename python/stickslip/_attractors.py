@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from stickslip._shown import Shown
 
 if TYPE_CHECKING:
     from stickslip._formulas import FormulaSystem
+
+
+_Column: TypeAlias = tuple[float, list[tuple[float, list[float]]], "str | None"]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -44,8 +47,8 @@ class Diagram(Shown):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Attractor(Shown):
-    """What a run leads to: a periodic `orbit`, or a `state` that does not change in a `mode`, or the
-    `rule` of a `mode` that ends the run.
+    """What a run leads to: a periodic `orbit`, or a `state` that does not change in a `mode`, or
+    the `rule` of a `mode` that ends the run.
     """
 
     orbit: Orbit | None
@@ -94,9 +97,7 @@ def diagram(
     row = (_parameter(system, name), _row(given, "values"))
     both = system._orbits.diagram(values, first, row, rule, _span(span))
 
-    def columns(found: list[tuple[float, list[tuple[float, list[float]]], str | None]]) -> (
-        NDArray[np.float64]
-    ):
+    def columns(found: list[_Column]) -> NDArray[np.float64]:
         rows = [[value, *state] for value, points, _ in found for _, state in points]
         return np.array(rows).reshape(-1, 1 + len(system.components)).T
 

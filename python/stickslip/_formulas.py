@@ -281,9 +281,10 @@ class FormulaSystem:
         return _orbits.curve(self, special, parameters, x, y, longest_step)
 
     def switched(self, branch: Branch, special: SpecialOrbit, *, aside: float = 0.05) -> Orbit:
-        """The orbit on the branch that begins or passes at a special orbit of a branch: of twice the
-        period at a flip, on the other branch at a branch-point. It lies beside the special orbit by
-        `aside` of the size of its states, at the value of the parameter where it is so far away.
+        """The orbit on the branch that begins or passes at a special orbit of a branch: of twice
+        the period at a flip, on the other branch at a branch-point. It lies beside the special
+        orbit by `aside` of the size of its states, at the value of the parameter where it is so far
+        away.
 
         Raises ValueError if a value is wrong, or for other kinds, ComputationError if none is
         found.
@@ -339,8 +340,8 @@ class FormulaSystem:
         downwards. Each run goes on where the last one ended, so that the two differ where there are
         several attractors. The rest is as in `section`.
         """
-        begins = (start, mode, begin)
-        return _attractors.diagram(self, (parameter, values), rule, (skip, time), begins, parameters)
+        begins, span = (start, mode, begin), (skip, time)
+        return _attractors.diagram(self, (parameter, values), rule, span, begins, parameters)
 
     def exponents(
         self,

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -153,8 +153,8 @@ class Branch(Shown):
         return self._components.index(component)
 
 
-Begin = tuple[ArrayLike | None, str | None, float | None]
-"""The state, the mode and the time at the start, where they are not those of the system."""
+#: The state, the mode and the time at the start, where they are not those of the system.
+Begin: TypeAlias = "tuple[ArrayLike | None, str | None, float | None]"
 
 
 def first_of(

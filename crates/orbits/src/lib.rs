@@ -5,8 +5,9 @@
 //! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
 //! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
 //! parameters, and [`Orbits::switched`] goes over to another branch at a flip or a branch point.
-//! What runs lead to, orbit or not, is shown by [`Orbits::section`] and [`Orbits::diagram`] as points,
-//! by [`Orbits::exponents`] as Lyapunov exponents, and by [`Orbits::basins`] over initial values.
+//! What runs lead to, orbit or not, is shown by [`Orbits::section`] and [`Orbits::diagram`] as
+//! points, by [`Orbits::exponents`] as Lyapunov exponents, and by [`Orbits::basins`] over initial
+//! values.
 //!
 //! ```
 //! use stickslip_expression::System;
@@ -46,8 +47,8 @@
 //! The modules in reading order: `itinerary`, `orbit` and `error` are what is spoken of;
 //! `equations` has the equations of an orbit with a prescribed itinerary; `newton` solves them by
 //! the tracer's one search for points; `multipliers` and `admissible` judge what was found; `find`
-//! and `settle` have the ways to an orbit, `branch` follows it, `attractors` looks at runs that need
-//! not settle, and `document` writes orbits.
+//! and `settle` have the ways to an orbit, `branch` follows it, `attractors` looks at runs that
+//! need not settle, and `document` writes orbits.
 
 mod admissible;
 mod attractors;

@@ -1,8 +1,8 @@
 //! Where two branches meet.
 //!
 //! Along a branch the search for points is singular there. With a further unknown that unfolds the
-//! meeting, it is regular (Moore, *SIAM J. Numer. Anal.* 17, 567, 1980): the equations are zero up to
-//! a multiple of the direction that their derivatives do not reach, and this direction exists.
+//! meeting, it is regular (Moore, *SIAM J. Numer. Anal.* 17, 567, 1980): the equations are zero up
+//! to a multiple of the direction that their derivatives do not reach, and this direction exists.
 
 use nalgebra::{DMatrix, DVector};
 
