@@ -16,7 +16,7 @@ use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
-use crate::shared::orbit::{MOST_BYTES, failure};
+use crate::shared::orbit::{MOST_BYTES, failure, special};
 use crate::shared::system::{Axis, axis, place, read, title};
 
 /// Follow special orbits of a system of your own over two parameters
@@ -75,7 +75,7 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
     let (system, _) = read(&arguments.system)?;
-    let record = special(arguments)?;
+    let record = read_special(arguments)?;
     let parameters = [place(&system, "--x", &x.name)?, place(&system, "--y", &y.name)?];
     if parameters[0] == parameters[1] {
         let name = &x.name;
@@ -84,10 +84,10 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
         )));
     }
     let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
-    let special = record.special(&orbits);
-    let special = special.map_err(|error| Failure::Usage(error.to_string()))?;
+    let known = record.special(&orbits);
+    let known = known.map_err(|error| Failure::Usage(error.to_string()))?;
     let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
-    let curve = orbits.curve(&special, parameters, window, &BranchOptions::default());
+    let curve = orbits.curve(&known, parameters, window, &BranchOptions::default());
     let curve = curve.map_err(failure)?;
     let document = Document::of_curve(&orbits, &title(&arguments.system), &curve);
     let mut stored = Vec::new();
@@ -103,7 +103,7 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
 }
 
 /// The special orbit of the branch.
-fn special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
+fn read_special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
     let path = &arguments.branch;
     let unusable = |reason: String| Failure::input(source::shown(path), reason);
     let text = source::read(path, MOST_BYTES)?;
@@ -112,14 +112,7 @@ fn special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
     if schema != BRANCH {
         return Err(unusable(format!("schema is {schema:?}; expected {BRANCH:?}")));
     }
-    let (kind, wanted) = arguments.kind.split_once(':').unwrap_or((&arguments.kind, "1"));
-    let count = wanted.parse::<usize>().ok().and_then(|count| count.checked_sub(1));
-    let found = specials.iter().filter(|it| it.kind.name() == kind);
-    count.and_then(|count| found.clone().nth(count)).cloned().ok_or_else(|| {
-        let known: Vec<_> = specials.iter().map(|it| it.kind.name()).collect();
-        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        Failure::Usage(format!("--kind {}: expected one of the branch: {known}", arguments.kind))
-    })
+    special(&specials, "--kind", &arguments.kind).cloned()
 }
 
 /// The parameters of an orbit.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use stickslip_expression::System;
 use stickslip_files::input::{json, number, source};
-use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord};
+use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord, SpecialRecord};
 use stickslip_orbits::{Guess, Orbit, OrbitError, Orbits};
 use stickslip_plane::sealed;
 
@@ -60,6 +60,12 @@ pub struct GuessArguments {
     #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
     pub near: Option<PathBuf>,
 
+    /// Of a branch in the file of --near: the orbit of twice the period that begins at a flip, or one
+    /// of the other branch at a branch-point; the first one of the kind, or the N-th with KIND:N
+    #[arg(long, value_name = "KIND[:N]", help_heading = "Guess", requires = "near")]
+    #[arg(conflicts_with = "set")]
+    pub switch: Option<String>,
+
     /// The durations of the segments; otherwise each is up to where its rule acts
     #[arg(long, value_name = "T,T,…", value_delimiter = ',', value_parser = number::parse_option)]
     #[arg(help_heading = "Guess", conflicts_with = "settle", allow_hyphen_values = true)]
@@ -72,8 +78,13 @@ struct Written {
     schema: String,
     orbit: Option<OrbitRecord>,
     points: Option<Vec<OrbitRecord>>,
+    parameter: Option<String>,
+    #[serde(default)]
+    specials: Vec<SpecialRecord>,
 }
 
+/// How far from a special orbit another branch is entered.
+const ASIDE: f64 = 0.05;
 /// Largest number of bytes of a file.
 pub const MOST_BYTES: u64 = 1 << 30;
 
@@ -170,6 +181,23 @@ impl GuessArguments {
         let text = source::read(path, MOST_BYTES)?;
         sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
         let written: Written = json::parse(&text).map_err(unusable)?;
+        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
+        let name = title(&self.from.system);
+        if let Some(kind) = &self.switch {
+            let (BRANCH, Some(points), Some(over)) =
+                (&*written.schema, &written.points, &written.parameter)
+            else {
+                return Err(unusable(format!("expected a branch in the layout {BRANCH:?}")));
+            };
+            let record = special(&written.specials, "--switch", kind)?;
+            let beside = points.get(record.behind.saturating_sub(1));
+            let beside = beside.ok_or_else(|| unusable("has no orbit beside it".to_owned()))?;
+            let known = record.special(&orbits).map_err(|error| unusable(error.to_string()))?;
+            let beside = beside.orbit(&orbits).map_err(failure)?;
+            let over = parameter(system, "--near", over)?;
+            let orbit = orbits.switched(&known, &beside, over, ASIDE).map_err(failure)?;
+            return Ok(FoundOrbit { name, orbits, orbit });
+        }
         let record = match (&*written.schema, written.orbit, written.points) {
             (ORBIT, Some(orbit), _) => Some(orbit),
             (BRANCH, _, Some(mut points)) => points.pop(),
@@ -177,15 +205,33 @@ impl GuessArguments {
         };
         let expected = format!("expected an orbit in the layout {ORBIT:?} or {BRANCH:?}");
         let record = record.ok_or_else(|| unusable(expected))?;
-        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
         let orbit = record.orbit(&orbits).map_err(failure)?;
         let mut parameters = orbit.parameters.clone();
         for (name, value) in &self.from.set {
             parameters[parameter(system, "--set", name)?] = *value;
         }
         let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
-        Ok(FoundOrbit { name: title(&self.from.system), orbits, orbit })
+        Ok(FoundOrbit { name, orbits, orbit })
     }
+}
+
+/// The special orbit that an option names: the first one of a kind, or the N-th.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is none.
+pub fn special<'a>(
+    specials: &'a [SpecialRecord],
+    option: &str,
+    given: &str,
+) -> Result<&'a SpecialRecord, Failure> {
+    let (kind, wanted) = given.split_once(':').unwrap_or((given, "1"));
+    let count = wanted.parse::<usize>().ok().and_then(|count| count.checked_sub(1));
+    let mut found = specials.iter().filter(|it| it.kind.name() == kind);
+    count.and_then(|count| found.nth(count)).ok_or_else(|| {
+        let known: Vec<_> = specials.iter().map(|it| it.kind.name()).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Failure::Usage(format!("{option} {given}: expected one of the branch: {known}"))
+    })
 }
 
 /// Why there is no orbit, as the program says it.

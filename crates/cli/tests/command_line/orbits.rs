@@ -82,6 +82,13 @@ fn a_branch_is_followed_and_written() {
     assert_eq!(near.code, 0, "{}", near.stderr);
     let near: Value = serde_json::from_str(&near.stdout).unwrap();
     assert_eq!(near["orbit"]["parameters"]["a"], 0.048);
+    // The orbit of twice the period that begins at the flip.
+    let doubled = directory.run("orbit ball.slip --near branch.json --switch flip --format json");
+    assert_eq!(doubled.code, 0, "{}", doubled.stderr);
+    let doubled: Value = serde_json::from_str(&doubled.stdout).unwrap();
+    assert!((doubled["orbit"]["period"].as_f64().unwrap() - 2.0).abs() < 1e-12);
+    let fold = directory.run("orbit ball.slip --near branch.json --switch fold");
+    assert!(fold.stderr.contains("expected a `flip` or a `branch-point`"), "{}", fold.stderr);
     let damaged = directory.read("branch.json").replacen("\"period\":1.0", "\"period\":1.1", 1);
     directory.write("damaged.json", &damaged);
     let refused = directory.run("orbit ball.slip --near damaged.json");
