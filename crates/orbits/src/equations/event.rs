@@ -140,10 +140,10 @@ impl Event {
         let own = [&self.after, &self.slopes, &self.slopes_after].map(DVector::as_slice);
         let others = [&later.after, &later.slopes, &later.slopes_after].map(DVector::as_slice);
         // Derivatives by parameters grow with the time where its scale depends on them.
-        let by = [self, later].map(|event| event.after_by.columns(0, event.slopes.len() + 1));
-        let [by, other] = by.each_ref().map(|by| by.as_slice());
-        let own = own.into_iter().chain([by, &self.conditions]);
-        let others = others.into_iter().chain([other, &later.conditions]);
+        let by = |event: &Self| event.after_by.columns(0, event.slopes.len() + 1).into_owned();
+        let (by, other) = (by(self), by(later));
+        let own = own.into_iter().chain([by.as_slice(), &self.conditions]);
+        let others = others.into_iter().chain([other.as_slice(), &later.conditions]);
         own.zip(others).all(|(own, others)| {
             // A condition is zero at its event.
             let size = own.iter().fold(self.after.amax(), |size, it| size.max(it.abs()));
