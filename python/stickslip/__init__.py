@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from stickslip._explorer import Explorer, explore
     from stickslip._laws import Keyword, NamedLaw, Restitution, laws, restitution
     from stickslip._native import ComputationError
+    from stickslip._attractors import Attractor, Basins, Diagram, Exponents
     from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialCurve, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
@@ -99,6 +100,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Atlas",
     "AtlasWarning",
+    "Attractor",
+    "Basins",
     "Bodies",
     "Boundary",
     "Branch",
@@ -108,8 +111,10 @@ __all__ = [
     "Compiled",
     "ComputationError",
     "DenseOutput",
+    "Diagram",
     "Estimate",
     "Explorer",
+    "Exponents",
     "FamilyAtlas",
     "FamilyChange",
     "FamilyCurve",
@@ -206,6 +211,7 @@ _MODULES = {
     "_explorer": "Explorer explore",
     "_laws": "Keyword NamedLaw Restitution laws restitution",
     "_native": "ComputationError",
+    "_attractors": "Attractor Basins Diagram Exponents",
     "_orbits": "Branch Orbit OrbitSegment SpecialCurve SpecialOrbit",
     "_solutions": "DenseOutput Solution",
     "_systems": "Guard HybridSystem Mode",

@@ -16,7 +16,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native, _orbits
+from stickslip import _attractors, _native, _orbits
+from stickslip._attractors import Basins, Diagram, Exponents
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._names import Named
@@ -279,13 +280,107 @@ class FormulaSystem:
         """
         return _orbits.curve(self, special, parameters, x, y, longest_step)
 
-    def doubled(self, orbit: Orbit, parameter: str, *, aside: float = 0.05) -> Orbit:
-        """The orbit of twice the period that begins at a flip: beside it by `aside` of the size of
-        its states, at the value of the parameter where it is so far away.
+    def switched(self, branch: Branch, special: SpecialOrbit, *, aside: float = 0.05) -> Orbit:
+        """The orbit on the branch that begins or passes at a special orbit of a branch: of twice
+        the period at a flip, on the other branch at a branch-point. It lies beside the special
+        orbit by `aside` of the size of its states, at the value of the parameter where it is so far
+        away.
 
-        Raises ValueError if a name or a value is wrong, ComputationError if none is found.
+        Raises ValueError if a value is wrong, or for other kinds, ComputationError if none is
+        found.
         """
-        return _orbits.doubled(self, orbit, parameter, aside)
+        return _orbits.switched(self, branch, special, aside)
+
+    def section(
+        self,
+        rule: str,
+        *,
+        time: float,
+        skip: float = 0.0,
+        start: ArrayLike | None = None,
+        mode: str | None = None,
+        begin: float | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The Poincaré map of a rule as data: times, shape (n,), and states before the rule acts,
+        shape (components, n), in the time behind `skip`.
+
+        start, mode and begin: the state, the mode and the time at the start, where they are not
+        those of the system. Raises ValueError if a name or a value is wrong, ComputationError if
+        the run does not come to its end.
+
+        >>> import stickslip
+        >>> tent = stickslip.system("""
+        ... parameter m = 1.5
+        ... state x = 0.25
+        ... x' = 0
+        ... every 1 from 1 "folds"
+        ...   x := m*min(x, 1 - x)
+        ... """)
+        >>> t, (x,) = tent.section("folds", time=3.5)
+        >>> t.tolist(), x.tolist()
+        ([1.0, 2.0, 3.0], [0.25, 0.375, 0.5625])
+        """
+        return _attractors.section(self, rule, (skip, time), (start, mode, begin), parameters)
+
+    def diagram(
+        self,
+        parameter: str,
+        values: ArrayLike,
+        rule: str,
+        *,
+        time: float,
+        skip: float = 0.0,
+        start: ArrayLike | None = None,
+        mode: str | None = None,
+        begin: float | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Diagram:
+        """A bifurcation diagram by brute force: `section` over values of a parameter, upwards and
+        downwards. Each run goes on where the last one ended, so that the two differ where there are
+        several attractors. The rest is as in `section`.
+        """
+        begins, span = (start, mode, begin), (skip, time)
+        return _attractors.diagram(self, (parameter, values), rule, span, begins, parameters)
+
+    def exponents(
+        self,
+        *,
+        time: float,
+        skip: float = 0.0,
+        start: ArrayLike | None = None,
+        mode: str | None = None,
+        begin: float | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Exponents:
+        """The Lyapunov exponents of a run through its events, in the time behind `skip`. One is 0
+        where time is not explicit. The rest is as in `section`.
+
+        >>> import stickslip
+        >>> decay = stickslip.system("state x = 1\\nx' = -2*x\\nevery 1 from 1\\n  x := x + 1")
+        >>> decay.exponents(time=20).values.round(9).tolist()
+        [-2.0]
+        """
+        return _attractors.exponents(self, (skip, time), (start, mode, begin), parameters)
+
+    def basins(
+        self,
+        components: tuple[str, str],
+        x: ArrayLike,
+        y: ArrayLike,
+        *,
+        settle: float,
+        start: ArrayLike | None = None,
+        mode: str | None = None,
+        begin: float | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Basins:
+        """Where runs from a grid of values of two components lead in the time `settle`, told apart:
+        periodic orbits, states that do not change, rules that end runs. Attractors that differ by
+        less than 1e-3 of their size are one. The rest is as in `section`.
+        """
+        begins = (start, mode, begin)
+        return _attractors.basins(self, components, x, y, settle, begins, parameters)
 
     @cached_property
     def _orbits(self) -> _native.OrbitSystem:

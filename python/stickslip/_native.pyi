@@ -136,7 +136,7 @@ class OrbitSystem:
         time: float,
     ) -> str: ...
     def continued(self, orbit: str, parameters: list[float]) -> str: ...
-    def doubled(self, orbit: str, parameter: int, aside: float) -> str: ...
+    def switched(self, special: str, beside: str, parameter: int, aside: float) -> str: ...
     def branch(
         self,
         orbit: str,
@@ -152,6 +152,35 @@ class OrbitSystem:
         window: list[list[float]],
         longest_step: float,
     ) -> str: ...
+    def section(
+        self,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        rule: str,
+        span: tuple[float, float],
+    ) -> list[tuple[float, list[float]]]: ...
+    def diagram(
+        self,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        over: tuple[int, list[float]],
+        rule: str,
+        span: tuple[float, float],
+    ) -> list[list[tuple[float, list[tuple[float, list[float]]], str | None]]]: ...
+    def exponents(
+        self,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        span: tuple[float, float],
+    ) -> tuple[list[float], float, int]: ...
+    def basins(
+        self,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        components: list[int],
+        values: tuple[list[float], list[float]],
+        time: float,
+    ) -> tuple[list[str], list[int]]: ...
     def course(self, orbit: str, parts: int) -> list[tuple[float, list[float]]]: ...
 
 def branch_picture(

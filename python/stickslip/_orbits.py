@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -153,10 +153,26 @@ class Branch(Shown):
         return self._components.index(component)
 
 
+#: The state, the mode and the time at the start, where they are not those of the system.
+Begin: TypeAlias = "tuple[ArrayLike | None, str | None, float | None]"
+
+
+def first_of(
+    system: FormulaSystem, begin: Begin
+) -> tuple[int | None, float | None, list[float] | None]:
+    """The start as the native module reads it."""
+    start, mode, time = begin
+    if mode is not None and mode not in system.modes:
+        raise ValueError(f"mode = {mode!r}; expected one of {system.modes}")
+    place = None if mode is None else system.modes.index(mode)
+    state = None if start is None else state_at_start(start).tolist()
+    return place, None if time is None else _number(time, "time"), state
+
+
 def orbit(
     system: FormulaSystem,
     itinerary: Sequence[str] | None,
-    begin: tuple[ArrayLike | None, str | None, float | None],
+    begin: Begin,
     durations: ArrayLike | None,
     settle: float | None,
     near: Orbit | None,
@@ -171,13 +187,7 @@ def orbit(
         values = system.values({**near.parameters, **(parameters or {})})
         found = system._orbits.continued(json.dumps(near._record), values)
         return _read(system, json.loads(found)["orbit"])
-    values = system.values(parameters)
-    start, mode, time = begin
-    if mode is not None and mode not in system.modes:
-        raise ValueError(f"mode = {mode!r}; expected one of {system.modes}")
-    place = None if mode is None else system.modes.index(mode)
-    state = None if start is None else state_at_start(start).tolist()
-    first = (place, None if time is None else _number(time, "time"), state)
+    values, first = system.values(parameters), first_of(system, begin)
     if settle is not None:
         found = system._orbits.settled(values, first, _number(settle, "settle"))
     else:
@@ -259,10 +269,12 @@ def curve(
     )
 
 
-def doubled(system: FormulaSystem, orbit: Orbit, parameter: str, aside: float) -> Orbit:
-    """See `FormulaSystem.doubled`."""
-    place, away = _parameter(system, parameter), _number(aside, "aside")
-    found = system._orbits.doubled(json.dumps(orbit._record), place, away)
+def switched(system: FormulaSystem, branch: Branch, special: SpecialOrbit, aside: float) -> Orbit:
+    """See `FormulaSystem.switched`."""
+    place, away = _parameter(system, branch.parameter), _number(aside, "aside")
+    beside = branch.points[max(special.behind - 1, 0)]
+    records = [json.dumps(it._record) for it in (special, beside)]
+    found = system._orbits.switched(records[0], records[1], place, away)
     return _read(system, json.loads(found)["orbit"])
 
 

@@ -137,10 +137,14 @@ COARSE, FEW = TraceOptions(cells=8), VerifyOptions(random_points=50, near_points
 #: How to make a result of each type that has rows, or that can be drawn, or both.
 MADE: dict[str, Callable[[], Any]] = {
     "Atlas": lambda: stickslip.trace((5, 8), (0.8, 1.2)),
+    "Attractor": lambda: of("Basins").attractors[0],
+    "Basins": lambda: table().basins(("x", "v"), [0.015, 0.02], [0.5], settle=100.0),
     "Bodies": bodies,
     "Boundary": lambda: of("Atlas").boundaries[0],
     "Collision": lambda: stickslip.collide(63, 0.5),
     "Collisions": lambda: stickslip.collide_many(np.geomspace(1, 100, 50), 0.5),
+    "Diagram": lambda: table().diagram("a", [0.02, 0.021], "bounce", time=5.0, skip=20.0),
+    "Exponents": lambda: table().exponents(time=50.0, skip=20.0),
     "DenseOutput": lambda: of("Solution").sol,
     "Estimate": lambda: of("Collision").estimate(),
     "FamilyAtlas": lambda: stickslip.trace_family(family(), *WINDOW, options=COARSE, verify=FEW),

@@ -65,11 +65,48 @@ def test_a_branch_has_its_special_orbits() -> None:
     cosine, sine = (1 - r) / (2 * (1 + r)) / w, 2 * (1 + r**2) / (1 + r) ** 2 / w**2
     assert np.abs(a - np.hypot(cosine, sine)).max() < 1e-11 and a.size > 5
     assert {round(float(r[0]), 12), round(float(r[-1]), 12)} == {0.6, 0.8}
-    doubled = ball.doubled(special["flip"].orbit, "a")
+    doubled = ball.switched(branch, special["flip"])
     assert abs(doubled.period - 2.0) < 1e-12 and doubled.stable
     assert len(doubled.segments) == 4
     with pytest.raises(ValueError, match="component = 'y'; expected one of x, v, phase"):
         branch.svg("y")
+    with pytest.raises(ValueError, match="expected a `flip` or a `branch-point`"):
+        ball.switched(branch, special["fold"])
+
+
+def test_a_tent_map_is_chaotic() -> None:
+    tent = stickslip.system(
+        "parameter m = 1.9\nstate x = 0.3\nx' = 0\n"
+        'every 1 from 1 "folds"\n  x := m*min(x, 1 - x)'
+    )
+    found = tent.exponents(time=1000.0, skip=10.5)
+    assert abs(found.values[0] - math.log(1.9)) < 1e-12
+    assert found.spread < 1e-11 and found.events == 1000
+    t, (x,) = tent.section("folds", time=20.0, skip=0.5)
+    assert t.size == 20 and np.allclose(x[1:], 1.9 * np.minimum(x[:-1], 1 - x[:-1]), atol=1e-12)
+    diagram = tent.diagram("m", [0.5, 1.5], "folds", time=10.0, skip=100.5)
+    # Below 1 all falls to 0.
+    assert diagram.up.shape == diagram.down.shape == (2, 20) and not diagram.troubles
+    assert np.abs(diagram.up[1, :10]).max() < 1e-12 and diagram.up[0, -1] == 1.5
+    with pytest.raises(ValueError, match="a rule of the system, which has folds"):
+        tent.section("bounce", time=1.0)
+    with pytest.raises(ValueError, match="the time to skip = -1"):
+        tent.exponents(time=1.0, skip=-1.0)
+
+
+def test_two_wells_have_their_basins() -> None:
+    wells = stickslip.system(
+        "state x = 0, v = 0\nx' = v\nv' = x - x^3 - 0.5*v\nwhen x > 3 \"out\" -> end"
+    )
+    x = [-1.1, -0.9, 0.9, 1.1]
+    found = wells.basins(("x", "v"), x, [0.05, 9.0], settle=100.0)
+    ends = [found.attractors[label] for label in found.labels[0]]
+    assert all(it.state is not None for it in ends)
+    assert [round(float(it.state[0])) for it in ends if it.state is not None] == [-1, -1, 1, 1]
+    assert {found.attractors[label].rule for label in found.labels[1]} == {"out"}
+    assert found.labels.shape == (2, 4) and found.components == ("x", "v")
+    with pytest.raises(ValueError, match="component = 'y'"):
+        wells.basins(("x", "y"), x, x, settle=1.0)
 
 
 def test_functions_have_orbits_too() -> None:

@@ -3,6 +3,7 @@
 //! is in `shared`.
 
 mod asymptote;
+mod basins;
 mod branch;
 mod collide;
 mod completions;
@@ -19,6 +20,7 @@ mod map;
 mod orbit;
 mod reproduce;
 mod run;
+mod section;
 mod stack;
 mod system;
 mod table;
@@ -53,6 +55,8 @@ pub enum Command {
     Orbit(orbit::OrbitArguments),
     Branch(branch::BranchArguments),
     Curve(curve::CurveArguments),
+    Section(section::SectionArguments),
+    Basins(basins::BasinsArguments),
     Trace(trace::TraceArguments),
     Stack(stack::StackArguments),
     Locate(locate::LocateArguments),
@@ -81,6 +85,8 @@ impl Command {
             Self::Orbit(arguments) => orbit::run(arguments),
             Self::Branch(arguments) => branch::run(arguments),
             Self::Curve(arguments) => curve::run(arguments),
+            Self::Section(arguments) => section::run(arguments),
+            Self::Basins(arguments) => basins::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),
             Self::Stack(arguments) => stack::run(arguments),
             Self::Locate(arguments) => locate::run(arguments),

@@ -5,7 +5,9 @@
 //! state, away from zeros of conditions, however unstable the orbit is. The rules that act must be
 //! those of the itinerary, at their times, and lead to its modes.
 
-use stickslip_expression::{Compiled, InvalidValue, Next, Recording, Rule, System, Trigger};
+use stickslip_expression::{
+    Compiled, InvalidValue, Next, Recording, Rule, Runnable, System, Trigger,
+};
 use stickslip_solver::dynamic::{DynamicSwitch, ReadableDynamic};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
@@ -53,6 +55,17 @@ impl Halfway {
         let compiled = system.compile()?;
         Ok(Self { system, compiled, modes })
     }
+
+    /// The system in a state of a mode.
+    pub fn starting(
+        &self,
+        parameters: &[f64],
+        mode: usize,
+        s: f64,
+        state: &[f64],
+    ) -> Result<Runnable, InvalidValue> {
+        self.compiled.with(parameters)?.starting(Some(mode + self.modes), Some(s), Some(state))
+    }
 }
 
 /// Whether the system follows the orbit at a solution of its equations.
@@ -60,7 +73,7 @@ impl Halfway {
 /// # Errors
 /// The parameters cannot be used.
 pub(crate) fn verdict(
-    Halfway { system, compiled, modes }: &Halfway,
+    halfway @ Halfway { system, modes, .. }: &Halfway,
     equations: &Equations,
     draft: &Draft,
     options: &Options,
@@ -69,7 +82,6 @@ pub(crate) fn verdict(
     if let Some(segment) = draft.durations.iter().position(|it| *it < 0.0) {
         return Ok(Verdict::Virtual(Obstacle::Backwards { segment }));
     }
-    let runnable = compiled.with(&draft.parameters)?;
     let (m, starts) = (draft.legs.len(), draft.starts());
     let long: Vec<usize> = (0..m).filter(|&i| draft.durations[i] > SHORT * period).collect();
     let mut undecided = None;
@@ -81,8 +93,7 @@ pub(crate) fn verdict(
         let middle = |segment: usize| time(segment) + 0.5 * draft.durations[segment % m];
         let state = equations.within(draft, from, 0.5 * draft.durations[from])?;
         let leg = draft.legs[from];
-        let own =
-            runnable.clone().starting(Some(leg.mode + modes), Some(middle(from)), Some(&state))?;
+        let own = halfway.starting(&draft.parameters, leg.mode, middle(from), &state)?;
         let expected: Vec<(usize, f64)> =
             (from..to).map(|i| (i % m, time(i) + draft.durations[i % m])).collect();
         let obstacle = |events: &[DynamicSwitch<usize>]| {
@@ -157,7 +168,7 @@ fn obstacle(
 }
 
 /// Whether a rule changes nothing.
-fn is_note(rule: &Rule) -> bool {
+pub(crate) fn is_note(rule: &Rule) -> bool {
     rule.next == Next::Stay
         && rule.changes.is_empty()
         && rule.rest.is_none()

@@ -4,15 +4,16 @@
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
-//! `change` finds where the verdict changes, `curve` follows special orbits over two parameters,
-//! and `doubled` goes over to orbits of twice the period.
+//! `meet` where branches meet, and `change` where the verdict changes. `curve` follows special orbits
+//! over two parameters, and `switched` goes over to another branch.
 
 mod borders;
 mod change;
 pub(crate) mod curve;
-mod doubled;
 mod locate;
+mod meet;
 mod point;
+mod switched;
 mod test;
 
 use stickslip_expression::InvalidValue;
@@ -62,17 +63,19 @@ impl BranchOptions {
     }
 }
 
-/// Orbits over a parameter.
+/// Orbits over a parameter. Parameters, orbits and rules are places in a system, or records with
+/// names.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Branch {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Branch<P = usize, O = Orbit, R = Option<usize>> {
     /// The parameter, by its place in the system.
-    pub parameter: usize,
+    pub parameter: P,
     /// Its range.
     pub range: [f64; 2],
     /// The orbits, in the order of the branch.
-    pub points: Vec<Orbit>,
+    pub points: Vec<O>,
     /// The special orbits, in the order of the branch.
-    pub specials: Vec<SpecialOrbit>,
+    pub specials: Vec<SpecialOrbit<O, R>>,
     /// Whether the branch comes back to its start.
     pub closed: bool,
     /// Why the branch is not complete, or not known as well as others are.
@@ -81,7 +84,8 @@ pub struct Branch {
 
 /// An orbit at which something changes along a branch.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpecialOrbit {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpecialOrbit<O = Orbit, R = Option<usize>> {
     /// What changes.
     pub kind: SpecialKind,
     /// The value of the parameter.
@@ -91,9 +95,10 @@ pub struct SpecialOrbit {
     /// The segment at which it happens, if it happens at one.
     pub segment: Option<usize>,
     /// The rule, by its place in the mode of the segment.
-    pub rule: Option<usize>,
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub rule: R,
     /// The orbit.
-    pub orbit: Orbit,
+    pub orbit: O,
 }
 
 /// What changes at a special orbit.
@@ -148,12 +153,48 @@ impl SpecialKind {
     }
 }
 
-/// One end of a branch.
-struct Half {
+/// One end of a branch or a curve, or both together. What is special has the number of points
+/// before it.
+struct Half<S> {
     points: Vec<Orbit>,
-    specials: Vec<SpecialOrbit>,
+    specials: Vec<S>,
     closed: bool,
     objection: Option<String>,
+}
+
+impl<S> Default for Half<S> {
+    fn default() -> Self {
+        Self { points: Vec::new(), specials: Vec::new(), closed: false, objection: None }
+    }
+}
+
+impl<S> Half<S> {
+    /// Both ends together, with the point between them.
+    fn joined(
+        mut self,
+        start: Orbit,
+        back: Option<Self>,
+        behind: impl Fn(&mut S) -> &mut usize,
+    ) -> Self {
+        let mut joined = back.unwrap_or_default();
+        let before = joined.points.len();
+        joined.points.reverse();
+        joined.specials.reverse();
+        for special in &mut joined.specials {
+            let own = behind(special);
+            *own = before + 1 - *own;
+        }
+        self.specials.iter_mut().for_each(|special| *behind(special) += before);
+        joined.points.push(start);
+        joined.points.append(&mut self.points);
+        joined.specials.append(&mut self.specials);
+        joined.closed = self.closed;
+        joined.objection = match (self.objection, joined.objection) {
+            (Some(one), Some(other)) => Some(format!("{one}; {other}")),
+            (one, other) => one.or(other),
+        };
+        joined
+    }
 }
 
 impl Orbits {
@@ -171,17 +212,7 @@ impl Orbits {
     ) -> Result<Branch, OrbitError> {
         options.validate()?;
         self.compiled.with(&orbit.parameters)?;
-        let count = self.system.parameters.len();
-        let expected = format!("the place of one of {count} parameters");
-        InvalidValue::check("the parameter", parameter, expected, parameter < count)?;
-        let name = &self.system.parameters[parameter].name;
-        let ordered = low < high && low.is_finite() && high.is_finite();
-        let range = format!("the range of {name}");
-        InvalidValue::check(range, [low, high], "LO:HI, finite, with LO < HI", ordered)?;
-        let value = orbit.parameters[parameter];
-        let within = (low..=high).contains(&value);
-        let expected = format!("a value in the range {low:?}:{high:?} of the branch");
-        InvalidValue::check(name.clone(), value, expected, within)?;
+        self.require_range(orbit, parameter, [low, high])?;
         let draft = orbit.draft();
         let active = [(parameter, high - low)];
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
@@ -189,7 +220,9 @@ impl Orbits {
         let start = along.first(&draft)?;
         let ahead = self.half(&along, &start, options);
         let back = (!ahead.closed).then(|| self.half(&along, &start.turned(), options));
-        Ok(joined(parameter, [low, high], start.orbit, ahead, back))
+        let Half { points, specials, closed, objection } =
+            ahead.joined(start.orbit, back, |special| &mut special.behind);
+        Ok(Branch { parameter, range: [low, high], points, specials, closed, objection })
     }
 
     /// The value of the parameter at a point, in words.
@@ -199,9 +232,13 @@ impl Orbits {
     }
 
     /// Follows a branch in one direction, without its first point.
-    fn half(&self, along: &Along<'_>, start: &Point, options: &BranchOptions) -> Half {
-        let mut half =
-            Half { points: Vec::new(), specials: Vec::new(), closed: false, objection: None };
+    fn half(
+        &self,
+        along: &Along<'_>,
+        start: &Point,
+        options: &BranchOptions,
+    ) -> Half<SpecialOrbit> {
+        let mut half = Half::default();
         let mut last = start.clone();
         let mut step = options.first_step;
         while !along.is_at_end(&last) {
@@ -250,41 +287,4 @@ impl Orbits {
         }
         half
     }
-}
-
-/// Both ends of a branch together.
-fn joined(
-    parameter: usize,
-    range: [f64; 2],
-    start: Orbit,
-    ahead: Half,
-    back: Option<Half>,
-) -> Branch {
-    let closed = ahead.closed;
-    let mut branch = Branch {
-        parameter,
-        range,
-        points: Vec::new(),
-        specials: Vec::new(),
-        closed,
-        objection: ahead.objection,
-    };
-    let mut before = 0;
-    if let Some(Half { points, specials, objection, .. }) = back {
-        before = points.len();
-        branch.points.extend(points.into_iter().rev());
-        let turned = specials.into_iter().rev();
-        branch
-            .specials
-            .extend(turned.map(|it| SpecialOrbit { behind: before + 1 - it.behind, ..it }));
-        branch.objection = match (branch.objection, objection) {
-            (Some(one), Some(other)) => Some(format!("{one}; {other}")),
-            (one, other) => one.or(other),
-        };
-    }
-    branch.points.push(start);
-    branch.points.extend(ahead.points);
-    let shifted = ahead.specials.into_iter();
-    branch.specials.extend(shifted.map(|it| SpecialOrbit { behind: before + it.behind, ..it }));
-    branch
 }

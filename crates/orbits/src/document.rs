@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use stickslip_expression::{InvalidValue, System};
 
 use crate::branch::curve::{Meeting, SpecialCurve};
-use crate::branch::{Branch, SpecialKind, SpecialOrbit};
+use crate::branch::{Branch, SpecialOrbit};
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::itinerary::Leg;
@@ -39,12 +39,12 @@ pub struct OrbitRecord {
     /// The largest error of a state or a duration, of its size.
     pub error: f64,
     /// The segments.
-    pub segments: Vec<SegmentRecord>,
+    pub segments: Vec<Segment<LegRecord>>,
 }
 
-/// A segment with names.
+/// The leg of a segment with names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SegmentRecord {
+pub struct LegRecord {
     /// The mode.
     pub mode: String,
     /// The rule that ends the segment.
@@ -53,67 +53,41 @@ pub struct SegmentRecord {
     pub place: usize,
     /// The mode that follows.
     pub next: String,
-    /// The duration.
-    pub duration: f64,
-    /// The state at the start, in the order of the components.
-    pub state: Vec<f64>,
-    /// The state at the end, before the rule acts.
-    pub end: Vec<f64>,
-    /// The rate of the rule's condition there.
-    pub rate: f64,
 }
 
-/// A document of one orbit.
+/// The rule of a special orbit, if there is one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OrbitDocument {
-    /// The name of the layout, [`ORBIT`].
-    pub schema: String,
-    /// The name of the system.
-    pub system: String,
-    /// The names of the components of states.
-    pub components: Vec<String>,
-    /// The orbit.
-    pub orbit: OrbitRecord,
-}
-
-/// A document of a branch.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BranchDocument {
-    /// The name of the layout, [`BRANCH`].
-    pub schema: String,
-    /// The name of the system.
-    pub system: String,
-    /// The names of the components of states.
-    pub components: Vec<String>,
-    /// The parameter.
-    pub parameter: String,
-    /// Its range.
-    pub range: [f64; 2],
-    /// The orbits, in the order of the branch.
-    pub points: Vec<OrbitRecord>,
-    /// The special orbits, in the order of the branch.
-    pub specials: Vec<SpecialRecord>,
-    /// Whether the branch comes back to its start.
-    pub closed: bool,
-    /// What speaks against the branch.
-    pub objection: Option<String>,
-}
-
-/// A special orbit with names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SpecialRecord {
-    /// What changes.
-    pub kind: SpecialKind,
-    /// The value of the parameter.
-    pub value: f64,
-    /// The number of points before it.
-    pub behind: usize,
-    /// The segment at which it happens.
-    pub segment: Option<usize>,
-    /// The name of the rule.
+pub struct RuleRecord {
+    /// The name.
     pub rule: Option<String>,
-    /// Its place in the mode of the segment.
+    /// The place in the mode of the segment.
     pub place: Option<usize>,
+}
+
+/// A branch with names.
+pub type BranchRecord = Branch<String, OrbitRecord, RuleRecord>;
+/// A special orbit with names.
+pub type SpecialRecord = SpecialOrbit<OrbitRecord, RuleRecord>;
+/// A curve of special orbits with names.
+pub type CurveRecord = SpecialCurve<String, OrbitRecord>;
+
+/// A document of an orbit, a branch or a curve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Document<T> {
+    /// The name of the layout: [`ORBIT`], [`BRANCH`] or [`CURVE`].
+    pub schema: String,
+    /// The name of the system.
+    pub system: String,
+    /// The names of the components of states.
+    pub components: Vec<String>,
+    /// What it holds.
+    #[serde(flatten)]
+    pub content: T,
+}
+
+/// What a document of one orbit holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OneOrbit {
     /// The orbit.
     pub orbit: OrbitRecord,
 }
@@ -156,16 +130,13 @@ impl OrbitRecord {
     pub fn new(system: &System, orbit: &Orbit) -> Self {
         let names = system.parameters.iter().map(|it| it.name.clone());
         let mode = |place: usize| system.modes[place].name.clone();
-        let segment = |it: &Segment| SegmentRecord {
-            mode: mode(it.leg.mode),
-            rule: it.leg.name(system),
-            place: it.leg.rule,
-            next: mode(it.leg.next),
-            duration: it.duration,
-            state: it.state.clone(),
-            end: it.end.clone(),
-            rate: it.rate,
+        let leg = |leg: Leg| LegRecord {
+            mode: mode(leg.mode),
+            rule: leg.name(system),
+            place: leg.rule,
+            next: mode(leg.next),
         };
+        let segment = |it: &Segment| it.clone().with(leg(it.leg));
         Self {
             parameters: names.zip(orbit.parameters.iter().copied()).collect(),
             start: orbit.start,
@@ -203,12 +174,12 @@ impl OrbitRecord {
         let parameters = names.collect::<Result<Vec<f64>, _>>()?;
         let mut segments = Vec::with_capacity(self.segments.len());
         for own in &self.segments {
-            let leg = Leg { mode: mode(&own.mode)?, rule: own.place, next: mode(&own.next)? };
+            let LegRecord { mode: name, rule, place, next } = &own.leg;
+            let leg = Leg { mode: mode(name)?, rule: *place, next: mode(next)? };
             let rules = &system.modes[leg.mode].rules;
-            let known = rules.get(leg.rule).is_some_and(|it| it.name(leg.rule) == own.rule);
-            InvalidValue::check("rule", &*own.rule, "the rule at its place in its mode", known)?;
-            let (state, end) = (own.state.clone(), own.end.clone());
-            segments.push(Segment { leg, state, duration: own.duration, end, rate: own.rate });
+            let known = rules.get(leg.rule).is_some_and(|it| it.name(leg.rule) == *rule);
+            InvalidValue::check("rule", &**rule, "the rule at its place in its mode", known)?;
+            segments.push(own.clone().with(leg));
         }
         InvalidValue::check("segments", segments.len(), "at least 1", !segments.is_empty())?;
         Ok(Orbit {
@@ -223,105 +194,57 @@ impl OrbitRecord {
     }
 }
 
-impl OrbitDocument {
-    /// The document of an orbit. `name` is that of the system.
-    #[must_use]
-    pub fn new(orbits: &Orbits, name: &str, orbit: &Orbit) -> Self {
-        let system = orbits.system();
-        Self {
-            schema: ORBIT.to_owned(),
-            system: name.to_owned(),
-            components: system.components.iter().map(|it| it.name.clone()).collect(),
-            orbit: OrbitRecord::new(system, orbit),
-        }
+impl<T> Document<T> {
+    fn new(orbits: &Orbits, schema: &str, name: &str, content: T) -> Self {
+        let components = orbits.system().components.iter().map(|it| it.name.clone()).collect();
+        Self { schema: schema.to_owned(), system: name.to_owned(), components, content }
     }
 }
 
-impl BranchDocument {
+impl Document<OneOrbit> {
+    /// The document of an orbit. `name` is that of the system.
+    #[must_use]
+    pub fn of_orbit(orbits: &Orbits, name: &str, orbit: &Orbit) -> Self {
+        let orbit = OrbitRecord::new(orbits.system(), orbit);
+        Self::new(orbits, ORBIT, name, OneOrbit { orbit })
+    }
+}
+
+impl Document<BranchRecord> {
     /// The document of a branch. `name` is that of the system.
     #[must_use]
-    pub fn new(orbits: &Orbits, name: &str, branch: &Branch) -> Self {
+    pub fn of_branch(orbits: &Orbits, name: &str, branch: &Branch) -> Self {
         let system = orbits.system();
         let special = |it: &SpecialOrbit| {
             let mode = it.segment.map(|segment| it.orbit.segments[segment].leg.mode);
-            let rule = mode.zip(it.rule);
-            SpecialRecord {
-                kind: it.kind,
-                value: it.value,
-                behind: it.behind,
-                segment: it.segment,
-                place: it.rule,
-                rule: rule.map(|(mode, rule)| system.modes[mode].rules[rule].name(rule)),
-                orbit: OrbitRecord::new(system, &it.orbit),
-            }
+            let name = |(mode, place): (usize, usize)| system.modes[mode].rules[place].name(place);
+            let rule = RuleRecord { rule: mode.zip(it.rule).map(name), place: it.rule };
+            let SpecialOrbit { kind, value, behind, segment, .. } = *it;
+            let orbit = OrbitRecord::new(system, &it.orbit);
+            SpecialOrbit { kind, value, behind, segment, rule, orbit }
         };
-        Self {
-            schema: BRANCH.to_owned(),
-            system: name.to_owned(),
-            components: system.components.iter().map(|it| it.name.clone()).collect(),
+        let branch = Branch {
             parameter: system.parameters[branch.parameter].name.clone(),
             range: branch.range,
             points: branch.points.iter().map(|it| OrbitRecord::new(system, it)).collect(),
             specials: branch.specials.iter().map(special).collect(),
             closed: branch.closed,
             objection: branch.objection.clone(),
-        }
+        };
+        Self::new(orbits, BRANCH, name, branch)
     }
 }
 
-/// A document of a curve of special orbits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CurveDocument {
-    /// The name of the layout, [`CURVE`].
-    pub schema: String,
-    /// The name of the system.
-    pub system: String,
-    /// The names of the components of states.
-    pub components: Vec<String>,
-    /// What changes along the curve.
-    pub kind: SpecialKind,
-    /// The parameters.
-    pub parameters: [String; 2],
-    /// The window, an interval for each parameter.
-    pub window: [[f64; 2]; 2],
-    /// The orbits, in the order of the curve.
-    pub points: Vec<OrbitRecord>,
-    /// Orbits at which something else changes too.
-    pub meetings: Vec<MeetingRecord>,
-    /// Whether the curve comes back to its start.
-    pub closed: bool,
-    /// What speaks against the curve.
-    pub objection: Option<String>,
-}
-
-/// An orbit that is special twice, with names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MeetingRecord {
-    /// What changes besides.
-    pub kind: SpecialKind,
-    /// The segment at which it happens.
-    pub segment: Option<usize>,
-    /// The number of points before it.
-    pub behind: usize,
-    /// The orbit.
-    pub orbit: OrbitRecord,
-}
-
-impl CurveDocument {
+impl Document<CurveRecord> {
     /// The document of a curve. `name` is that of the system.
     #[must_use]
-    pub fn new(orbits: &Orbits, name: &str, curve: &SpecialCurve) -> Self {
+    pub fn of_curve(orbits: &Orbits, name: &str, curve: &SpecialCurve) -> Self {
         let system = orbits.system();
-        let meeting = |it: &Meeting| MeetingRecord {
-            kind: it.kind,
-            segment: it.segment,
-            behind: it.behind,
-            orbit: OrbitRecord::new(system, &it.orbit),
+        let meeting = |&Meeting { kind, segment, behind, ref orbit }: &Meeting| {
+            let orbit = OrbitRecord::new(system, orbit);
+            Meeting { kind, segment, behind, orbit }
         };
-        Self {
-            schema: CURVE.to_owned(),
-            system: name.to_owned(),
-            components: system.components.iter().map(|it| it.name.clone()).collect(),
+        let curve = SpecialCurve {
             kind: curve.kind,
             parameters: curve.parameters.map(|place| system.parameters[place].name.clone()),
             window: curve.window,
@@ -329,7 +252,8 @@ impl CurveDocument {
             meetings: curve.meetings.iter().map(meeting).collect(),
             closed: curve.closed,
             objection: curve.objection.clone(),
-        }
+        };
+        Self::new(orbits, CURVE, name, curve)
     }
 }
 
@@ -340,7 +264,8 @@ impl SpecialRecord {
     /// [`InvalidValue`]: the record is not of this system.
     pub fn special(&self, orbits: &Orbits) -> Result<SpecialOrbit, InvalidValue> {
         let orbit = self.orbit.read(orbits)?;
-        let Self { kind, value, behind, segment, place, .. } = *self;
-        Ok(SpecialOrbit { kind, value, behind, segment, rule: place, orbit })
+        let Self { kind, value, behind, segment, .. } = *self;
+        let rule = self.rule.place;
+        Ok(SpecialOrbit { kind, value, behind, segment, rule, orbit })
     }
 }

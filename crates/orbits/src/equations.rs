@@ -20,9 +20,13 @@ use stickslip_solver::{GivenValue, Options};
 
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, require_of};
-pub(crate) use event::Event;
-use event::{EventFormulas, by_each};
-use flow::{Flow, Flown};
+use event::by_each;
+pub(crate) use event::{Event, EventFormulas, rate};
+use flow::Flown;
+pub(crate) use flow::{Flow, enlarge};
+
+/// A condition is zero if it is less than this part of what it is made of.
+const ZERO: f64 = 1e-9;
 
 /// The unknowns of an orbit.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,13 +114,14 @@ impl Equations {
         let graph = &mut graph;
         let ticks = ticks(system, &anchor)?;
         let clock = clock(graph, system, &legs, &places)?;
-        let flows = legs.iter().map(|leg| Flow::new(graph, system, leg.mode, &places)).collect();
+        let flows = legs.iter().map(|leg| Flow::new(graph, system, leg.mode, &places));
+        let flows: Vec<Flow> = flows.collect();
         let event = |(leg, tick): (&Leg, &Option<f64>)| {
             EventFormulas::new(graph, system, *leg, *tick, &places)
         };
         let events = legs.iter().zip(&ticks).map(event).collect();
         let apart = (0..n).map(|place| is_apart(system, &legs, place)).collect();
-        let sizes = sizes(&anchor, active);
+        let sizes = sizes(&anchor, &flows, active, options)?;
         let least = sizes.rows(0, n).iter().fold(f64::INFINITY, |least, size| least.min(*size));
         let options = Options { atol: options.rtol * 0.1 * least, ..*options };
         let parameters = anchor.parameters.clone();
@@ -313,20 +318,19 @@ impl Equations {
         let n = self.n;
         let mut product = DMatrix::identity(n, n);
         for End { flown, event } in ends {
-            let by = event.guard_by.rows(0, n).transpose();
-            let reset = event.after_by.columns(0, n);
-            let jump = &event.slopes_after - reset * &event.slopes - event.after_by.column(n);
-            let mut saltation = reset.into_owned();
-            if by.amax() > 0.0 {
-                saltation += jump * by / event.rate();
-            }
-            product = saltation * flown.by.columns(0, n) * product;
+            product = event.saltation() * flown.by.columns(0, n) * product;
         }
         let moving: Vec<usize> = (0..n).filter(|k| !self.apart[*k]).collect();
         let product = product.select_rows(&moving).select_columns(&moving);
         let last = &ends.last()?.event.slopes_after;
         let trivial = self.clock.is_none().then(|| last.select_rows(&moving));
         product.iter().all(|it| it.is_finite()).then_some((product, trivial))
+    }
+
+    /// Whether the condition of an event is zero.
+    pub fn is_at(&self, event: &Event) -> bool {
+        let parts = (0..self.n).map(|k| (event.guard_by[k] * self.sizes[k]).abs());
+        event.guard.abs() <= ZERO * parts.fold(0.0, f64::max)
     }
 
     /// The state after a part of a segment.
@@ -371,34 +375,58 @@ impl Equations {
     }
 }
 
-/// The sizes of the unknowns of a draft.
-fn sizes(draft: &Draft, active: &[(usize, f64)]) -> DVector<f64> {
-    let (n, m) = (draft.states[0].len(), draft.legs.len());
-    let largest = |k: usize| draft.states.iter().fold(0.0_f64, |most, it| most.max(it[k].abs()));
+/// The sizes of the unknowns of a draft: of components, the largest ones along the whole orbit. At
+/// its events a component may be zero.
+fn sizes(
+    draft: &Draft,
+    flows: &[Flow],
+    active: &[(usize, f64)],
+    options: &Options,
+) -> Result<DVector<f64>, OrbitError> {
+    let m = draft.legs.len();
+    let mut largest = vec![0.0; draft.states[0].len()];
+    for (segment, s) in draft.starts().into_iter().enumerate() {
+        let start = (s, &draft.states[segment][..]);
+        flows[segment]
+            .measure(&draft.parameters, start, draft.durations[segment], options, &mut largest)
+            .map_err(|error| OrbitError::Run { segment, error })?;
+    }
     let or_one = |size: f64| if size > 0.0 && size.is_finite() { size } else { 1.0 };
-    let of_states: Vec<f64> = (0..n).map(|k| or_one(largest(k))).collect();
+    largest.iter_mut().for_each(|size| *size = or_one(*size));
     let time = or_one(draft.period().abs());
-    let states = (0..m).flat_map(|_| of_states.iter().copied());
+    let states = (0..m).flat_map(|_| largest.iter().copied());
     let times = std::iter::repeat_n(time, m + 1);
-    DVector::from_vec(states.chain(times).chain(active.iter().map(|(_, size)| *size)).collect())
+    let sizes = states.chain(times).chain(active.iter().map(|(_, size)| *size));
+    Ok(DVector::from_vec(sizes.collect()))
 }
 
 /// Whether a component need not come back at the end of an itinerary: nothing changes it, or it is
-/// a counter, which nothing else reads.
+/// a counter or an integral, which nothing else reads and which only adds to itself.
 pub(crate) fn is_apart(system: &System, legs: &[Leg], place: usize) -> bool {
-    let is_still = legs.iter().all(|leg| {
-        let slope = system.modes[leg.mode].slopes[place];
-        let changes = &leg.rule(system).changes;
-        system.graph.value(slope) == Some(0.0) && changes.iter().all(|(own, _)| *own != place)
-    });
-    let mut others = Vec::new();
+    let component = Variable::Component(flow::narrow(place));
+    let mut graph = system.graph.clone();
+    let (mut is_still, mut adds, mut others) = (true, true, Vec::new());
+    let mut by = |formula: Formula| {
+        let by = graph.slope(formula, &mut |graph, variable| {
+            graph.constant(f64::from(u8::from(variable == component)))
+        });
+        graph.value(by)
+    };
     for leg in legs {
         let mode = &system.modes[leg.mode];
+        is_still &= system.graph.value(mode.slopes[place]) == Some(0.0)
+            && leg.rule(system).changes.iter().all(|(own, _)| *own != place);
+        adds &= by(mode.slopes[place]) == Some(0.0);
         let slopes = mode.slopes.iter().enumerate().filter(|(own, _)| *own != place);
         others.extend(slopes.map(|(_, slope)| *slope));
         for rule in &mode.rules {
-            let changes = rule.changes.iter().filter(|(own, _)| *own != place);
-            others.extend(changes.map(|(_, formula)| *formula));
+            for &(own, change) in &rule.changes {
+                if own == place {
+                    adds &= matches!(by(change), Some(0.0 | 1.0));
+                } else {
+                    others.push(change);
+                }
+            }
             if let Trigger::When(guard, _) = rule.trigger {
                 others.push(guard);
             }
@@ -407,7 +435,7 @@ pub(crate) fn is_apart(system: &System, legs: &[Leg], place: usize) -> bool {
             }
         }
     }
-    is_still || !system.graph.reads(&others).contains(&Variable::Component(flow::narrow(place)))
+    is_still || adds && !system.graph.reads(&others).contains(&component)
 }
 
 /// The number of the tick at the end of each segment.

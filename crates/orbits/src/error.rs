@@ -1,6 +1,6 @@
 //! Why there is no orbit.
 
-use stickslip_solver::{InvalidValue, RunError};
+use stickslip_solver::{InvalidValue, Outcome, RunError};
 use thiserror::Error;
 
 /// Why an orbit or a branch was not found. Segments are counted from 0, in the order of the
@@ -42,13 +42,31 @@ pub enum OrbitError {
         /// The name of the rule.
         rule: String,
     },
-    /// What happens at events does not repeat.
-    #[error("the run does not settle: its last {events} events do not repeat up to {tolerance:e}")]
+    /// What happens at events of a run does not repeat.
+    #[error("the run does not settle: {}", not_settled(*events, *tolerance, *outcome))]
     NotSettled {
         /// The number of events that were compared.
         events: usize,
         /// How much states at repeated events may differ, of their size.
         tolerance: f64,
+        /// How the run ended.
+        outcome: Outcome,
+    },
+    /// A run does not come to its end.
+    #[error("the run ends at t = {s:?}: {}", ending(*outcome))]
+    Ends {
+        /// How it ended.
+        outcome: Outcome,
+        /// When.
+        s: f64,
+    },
+    /// A direction grows without bound at a graze.
+    #[error("the condition of rule `{rule}` only touches zero at t = {s:?}; expected a crossing")]
+    Grazes {
+        /// The name of the rule.
+        rule: String,
+        /// When.
+        s: f64,
     },
     /// The search found no orbit.
     #[error("no orbit near the guess: {reason} (segment {segment}, update {update:e})")]
@@ -71,4 +89,28 @@ pub enum OrbitError {
         /// The least one.
         least: f64,
     },
+}
+
+impl OrbitError {
+    /// There is no orbit, and no segment where it fails.
+    pub(crate) const fn nowhere(reason: &'static str) -> Self {
+        Self::NotFound { reason, segment: 0, update: f64::NAN }
+    }
+}
+
+fn not_settled(events: usize, tolerance: f64, outcome: Outcome) -> String {
+    match outcome {
+        Outcome::Zeno { .. } | Outcome::EndedByGuard { .. } => ending(outcome),
+        _ => format!("its last {events} events do not repeat up to {tolerance:e}"),
+    }
+}
+
+fn ending(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::Zeno { accumulation } => format!("its events accumulate at t = {accumulation:?}"),
+        Outcome::EndedByGuard { .. } => "a rule ends it".to_owned(),
+        Outcome::SwitchLimit => "it has too many events".to_owned(),
+        Outcome::StepLimit => "it needs too many steps".to_owned(),
+        Outcome::ReachedEnd | Outcome::Stopped => "it stops".to_owned(),
+    }
 }

@@ -1,10 +1,10 @@
-//! Orbits from a guess, from a run that settles, and from an orbit at other parameters.
+//! Orbits from a guess, and from an orbit at other parameters.
 
-use stickslip_expression::{Compiled, InvalidValue, Next, Rule, Runnable, System, Trigger};
+use stickslip_expression::{Compiled, InvalidValue, Rule, Runnable, System, Trigger};
 use stickslip_solver::{EmbeddedPair, GivenValue, Options, Outcome};
 
 use crate::admissible::{Halfway, verdict};
-use crate::equations::{Draft, Equations, Evaluation, clock_values, is_apart};
+use crate::equations::{Draft, Equations, Evaluation, clock_values};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after, require_short, rules_named};
 use crate::multipliers::multipliers;
@@ -15,10 +15,6 @@ use crate::orbit::{Orbit, Segment, Verdict};
 const GUESS_STEPS: usize = 100_000;
 /// The least period, of the largest time of the guess.
 const LEAST_PERIOD: f64 = 1e-7;
-/// So many events of a run are looked at for one that repeats.
-const MOST_EVENTS: usize = 400;
-/// How much repeated states may differ, of their size.
-const REPEATS: f64 = 1e-4;
 
 /// The periodic orbits of a system.
 #[derive(Clone, Debug)]
@@ -26,7 +22,7 @@ pub struct Orbits {
     pub(crate) system: System,
     pub(crate) compiled: Compiled,
     /// What decides whether the system follows an orbit.
-    halfway: Halfway,
+    pub(crate) halfway: Halfway,
     /// The accuracy of flows and runs.
     pub(crate) options: Options,
 }
@@ -78,64 +74,6 @@ impl Orbits {
         self.solve(&self.followed(parameters, guess)?)
     }
 
-    /// The orbit to which a run from the start of the guess has settled after a time: its last
-    /// events repeat. Its itinerary is not used.
-    ///
-    /// # Errors
-    /// [`OrbitError`].
-    pub fn settled(
-        &self,
-        parameters: &[f64],
-        guess: &Guess<'_>,
-        time: f64,
-    ) -> Result<Orbit, OrbitError> {
-        let runnable = self.start(parameters, guess)?;
-        let accepted = time.is_finite() && time > 0.0;
-        InvalidValue::check("the time to settle", time, "a finite number above 0", accepted)?;
-        let s = runnable.start().s;
-        let mut events = Vec::new();
-        let run = runnable.events(EmbeddedPair::Dop853, s + time, &self.options, &mut events);
-        let _ = run.map_err(|error| OrbitError::Run { segment: 0, error })?;
-        events.retain(|event| {
-            let rule = &self.system.modes[event.from].rules[event.guard];
-            let notes = rule.next == Next::Stay && rule.changes.is_empty();
-            !notes || matches!(rule.trigger, Trigger::Every { .. })
-        });
-        let last = &events[events.len().saturating_sub(MOST_EVENTS)..];
-        let not_settled = OrbitError::NotSettled { events: last.len(), tolerance: REPEATS };
-        let all = last.iter().map(|it| Leg { mode: it.from, rule: it.guard, next: it.to });
-        let all: Vec<Leg> = all.collect();
-        let apart: Vec<bool> = (0..self.system.components.len())
-            .map(|place| is_apart(&self.system, &all, place))
-            .collect();
-        let same = |one: usize, other: usize| {
-            let (one, other) = (&last[one], &last[other]);
-            let near =
-                |(x, y): (&f64, &f64)| (x - y).abs() <= REPEATS * x.abs().max(y.abs()).max(REPEATS);
-            (one.from, one.guard, one.to) == (other.from, other.guard, other.to)
-                && one
-                    .after
-                    .iter()
-                    .zip(&other.after)
-                    .zip(&apart)
-                    .all(|(it, apart)| *apart || near(it))
-        };
-        let repeats = |m: &usize| {
-            let rounds = (last.len() - 1) / m;
-            rounds >= 2 && (last.len() - m..last.len()).all(|k| same(k, k - m))
-        };
-        let m = (1..last.len()).find(repeats).ok_or(not_settled)?;
-        let round = &last[last.len() - m - 1..];
-        let legs = round[1..].iter().map(|it| Leg { mode: it.from, rule: it.guard, next: it.to });
-        self.solve(&Draft {
-            parameters: parameters.to_vec(),
-            start: round[0].s,
-            legs: legs.collect(),
-            states: round[..m].iter().map(|it| it.after.clone()).collect(),
-            durations: round.windows(2).map(|pair| pair[1].s - pair[0].s).collect(),
-        })
-    }
-
     /// The orbit of the same itinerary at other parameters, near enough that the search finds it.
     ///
     /// # Errors
@@ -164,8 +102,35 @@ impl Orbits {
     }
 
     /// The system at the start of a guess.
-    fn start(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Runnable, InvalidValue> {
+    pub(crate) fn start(
+        &self,
+        parameters: &[f64],
+        guess: &Guess<'_>,
+    ) -> Result<Runnable, InvalidValue> {
         self.compiled.with(parameters)?.starting(guess.mode, guess.time, guess.state)
+    }
+
+    /// Refuses what is not the place of a parameter.
+    pub(crate) fn require_parameter(&self, place: usize) -> Result<(), InvalidValue> {
+        let count = self.system.parameters.len();
+        let expected = format!("the place of one of {count} parameters");
+        InvalidValue::check("the parameter", place, expected, place < count)
+    }
+
+    /// Refuses a range of a parameter in which its value at an orbit does not lie.
+    pub(crate) fn require_range(
+        &self,
+        orbit: &Orbit,
+        place: usize,
+        [low, high]: [f64; 2],
+    ) -> Result<(), InvalidValue> {
+        self.require_parameter(place)?;
+        let (name, value) = (&self.system.parameters[place].name, orbit.parameters[place]);
+        let ordered = low < high && low.is_finite() && high.is_finite();
+        let range = format!("the range of {name}");
+        InvalidValue::check(range, [low, high], "LO:HI, finite, with LO < HI", ordered)?;
+        let expected = format!("a value in the range {low:?}:{high:?}");
+        InvalidValue::check(name.clone(), value, expected, (low..=high).contains(&value))
     }
 
     /// What the rules of an itinerary do from its start.

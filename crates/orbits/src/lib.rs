@@ -4,7 +4,10 @@
 //! functions of Python. An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
 //! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
 //! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
-//! parameters, and [`Orbits::doubled`] goes over to the orbit of twice the period at a flip.
+//! parameters, and [`Orbits::switched`] goes over to another branch at a flip or a branch point.
+//! What runs lead to, orbit or not, is shown by [`Orbits::section`] and [`Orbits::diagram`] as
+//! points, by [`Orbits::exponents`] as Lyapunov exponents, and by [`Orbits::basins`] over initial
+//! values.
 //!
 //! ```
 //! use stickslip_expression::System;
@@ -44,9 +47,11 @@
 //! The modules in reading order: `itinerary`, `orbit` and `error` are what is spoken of;
 //! `equations` has the equations of an orbit with a prescribed itinerary; `newton` solves them by
 //! the tracer's one search for points; `multipliers` and `admissible` judge what was found; `find`
-//! has the ways to an orbit, `branch` follows it, and `document` writes it.
+//! and `settle` have the ways to an orbit, `branch` follows it, `attractors` looks at runs that
+//! need not settle, and `document` writes orbits.
 
 mod admissible;
+mod attractors;
 mod branch;
 #[cfg(feature = "serde")]
 pub mod document;
@@ -57,7 +62,9 @@ mod itinerary;
 mod multipliers;
 mod newton;
 mod orbit;
+mod settle;
 
+pub use attractors::{Attractor, Basins, Column, Exponents, Section, SectionPoint};
 pub use branch::curve::{Meeting, SpecialCurve};
 pub use branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
 pub use error::OrbitError;

@@ -31,17 +31,31 @@ pub(crate) fn correct(
     start: &DVector<f64>,
     conditions: &[Condition<'_>],
 ) -> Result<Zero<Dyn>, OrbitError> {
+    search(equations, start, |place, _| Ok(all(equations.at(place)?, place, conditions)))
+}
+
+/// Values of conditions, and their derivatives.
+type Local = (DVector<f64>, Option<DMatrix<f64>>);
+
+/// As [`correct`], for any conditions near those of an orbit: they are given a place, whose further
+/// unknowns follow those of the orbit, and whether derivatives are asked for.
+///
+/// # Errors
+/// As there.
+pub(crate) fn search(
+    equations: &Equations,
+    start: &DVector<f64>,
+    mut conditions: impl FnMut(&DVector<f64>, bool) -> Result<Local, OrbitError>,
+) -> Result<Zero<Dyn>, OrbitError> {
     let mut failed = None;
-    let found = solve(start, &LIMITS, |place, _| {
-        match equations.at(place) {
-            Ok(evaluation) => Ok::<_, OrbitError>(Some(all(evaluation, place, conditions))),
-            // Some places on the way have no flow: half of the way is taken back.
-            Err(error @ OrbitError::Run { .. }) => {
-                failed = Some(error);
-                Ok(None)
-            }
-            Err(error) => Err(error),
+    let found = solve(start, &LIMITS, |place, wanted| match conditions(place, wanted) {
+        Ok(local) => Ok::<_, OrbitError>(Some(local)),
+        // Some places on the way have no flow: half of the way is taken back.
+        Err(error @ OrbitError::Run { .. }) => {
+            failed = Some(error);
+            Ok(None)
         }
+        Err(error) => Err(error),
     })?;
     found.map_err(|unsolved| {
         let (reason, at, update) = match unsolved {
@@ -68,7 +82,7 @@ fn all(
     Evaluation { values, slopes, .. }: Evaluation,
     place: &DVector<f64>,
     conditions: &[Condition<'_>],
-) -> (DVector<f64>, Option<DMatrix<f64>>) {
+) -> Local {
     let (count, more) = (values.len(), conditions.len());
     let mut values = values.insert_rows(count, more, 0.0);
     let mut slopes = slopes.insert_rows(count, more, 0.0);

@@ -25,17 +25,28 @@ pub struct Orbit {
 
 /// A part of an orbit, in one mode.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Segment {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Segment<L = Leg> {
     /// Its mode, and the rule that ends it.
-    pub leg: Leg,
-    /// The state at its start.
-    pub state: Vec<f64>,
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub leg: L,
     /// Its length.
     pub duration: f64,
+    /// The state at its start.
+    pub state: Vec<f64>,
     /// The state at its end, before the rule acts.
     pub end: Vec<f64>,
     /// The rate of the rule's condition there. It is 0 at a graze.
     pub rate: f64,
+}
+
+impl<L> Segment<L> {
+    /// The same segment with another leg.
+    #[must_use]
+    pub fn with<M>(self, leg: M) -> Segment<M> {
+        let Self { duration, state, end, rate, .. } = self;
+        Segment { leg, duration, state, end, rate }
+    }
 }
 
 /// Whether the rules of an itinerary are those that act along an orbit.
@@ -85,6 +96,11 @@ impl Orbit {
     #[must_use]
     pub fn is_admissible(&self) -> bool {
         self.verdict == Verdict::Admissible
+    }
+
+    /// The time at the start of a segment, or at the end behind the last one.
+    pub(crate) fn time(&self, segment: usize) -> f64 {
+        self.start + self.segments[..segment].iter().map(|it| it.duration).sum::<f64>()
     }
 
     /// Whether all multipliers are less than 1 in size.

@@ -1,17 +1,25 @@
 //! Periodic orbits of systems of formulas, as the JSON of their documents.
 
 use pyo3::prelude::*;
+use serde_json::json;
 use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
-use stickslip_orbits::document::{
-    BranchDocument, CurveDocument, OrbitDocument, OrbitRecord, SpecialRecord,
+use stickslip_orbits::document::{Document, OrbitRecord, SpecialRecord};
+use stickslip_orbits::{
+    Attractor, BranchOptions, Column, Guess, Orbit, OrbitError, Orbits, Section, SectionPoint,
+    SpecialOrbit,
 };
-use stickslip_orbits::{BranchOptions, Guess, Orbit, OrbitError, Orbits};
 
 use crate::failure::{bad_input, failed};
 use crate::formulas::FormulaSystem;
 
 /// The mode, the time and the state at the start, where they are not those of the system.
 type Start = (Option<usize>, Option<f64>, Option<Vec<f64>>);
+
+/// Times and states.
+type Points = Vec<(f64, Vec<f64>)>;
+
+/// A value of a parameter, its points, and why there are none.
+type DiagramColumn = (f64, Points, Option<String>);
 
 /// The periodic orbits of a system.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -32,10 +40,9 @@ impl OrbitSystem {
         itinerary: Vec<String>,
         durations: Option<Vec<f64>>,
     ) -> PyResult<String> {
-        let (mode, time, state) = start;
         let itinerary: Vec<&str> = itinerary.iter().map(String::as_str).collect();
-        let (state, durations) = (state.as_deref(), durations.as_deref());
-        let guess = Guess { mode, time, state, itinerary: &itinerary, durations };
+        let (itinerary, durations) = (&itinerary[..], durations.as_deref());
+        let guess = Guess { itinerary, durations, ..guess(&start) };
         self.written(py.detach(|| self.0.find(&parameters, &guess)))
     }
 
@@ -46,9 +53,7 @@ impl OrbitSystem {
         start: Start,
         time: f64,
     ) -> PyResult<String> {
-        let (mode, at, state) = start;
-        let guess = Guess { mode, time: at, state: state.as_deref(), ..Guess::default() };
-        self.written(py.detach(|| self.0.settled(&parameters, &guess, time)))
+        self.written(py.detach(|| self.0.settled(&parameters, &guess(&start), time)))
     }
 
     fn continued(&self, py: Python<'_>, orbit: &str, parameters: Vec<f64>) -> PyResult<String> {
@@ -56,15 +61,16 @@ impl OrbitSystem {
         self.written(py.detach(|| self.0.continued(&orbit, &parameters)))
     }
 
-    fn doubled(
+    fn switched(
         &self,
         py: Python<'_>,
-        orbit: &str,
+        special: &str,
+        beside: &str,
         parameter: usize,
         aside: f64,
     ) -> PyResult<String> {
-        let orbit = self.read(orbit)?;
-        self.written(py.detach(|| self.0.doubled(&orbit, parameter, aside)))
+        let (special, beside) = (self.read_special(special)?, self.read(beside)?);
+        self.written(py.detach(|| self.0.switched(&special, &beside, parameter, aside)))
     }
 
     fn branch(
@@ -82,7 +88,7 @@ impl OrbitSystem {
         let first_step = usual.first_step.min(longest_step);
         let options = BranchOptions { first_step, longest_step, most_points, ..usual };
         let found = py.detach(|| self.0.branch(&orbit, parameter, [low, high], &options));
-        let document = BranchDocument::new(&self.0, "", &found.map_err(exception)?);
+        let document = Document::of_branch(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
     }
 
@@ -94,14 +100,91 @@ impl OrbitSystem {
         window: [[f64; 2]; 2],
         longest_step: f64,
     ) -> PyResult<String> {
-        let record: SpecialRecord = serde_json::from_str(special).map_err(bad_input)?;
-        let special = record.special(&self.0).map_err(bad_input)?;
+        let special = self.read_special(special)?;
         let usual = BranchOptions::default();
         let first_step = usual.first_step.min(longest_step);
         let options = BranchOptions { first_step, longest_step, ..usual };
         let found = py.detach(|| self.0.curve(&special, parameters, window, &options));
-        let document = CurveDocument::new(&self.0, "", &found.map_err(exception)?);
+        let document = Document::of_curve(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
+    }
+
+    /// Times and states where a run meets a rule.
+    fn section(
+        &self,
+        py: Python<'_>,
+        parameters: Vec<f64>,
+        start: Start,
+        rule: &str,
+        span: (f64, f64),
+    ) -> PyResult<Points> {
+        let section = Section { rule, skip: span.0, time: span.1 };
+        let found = py.detach(|| self.0.section(&parameters, &guess(&start), &section));
+        Ok(pairs(found.map_err(exception)?))
+    }
+
+    /// The same over values of a parameter, upwards and downwards: values, points and troubles.
+    fn diagram(
+        &self,
+        py: Python<'_>,
+        parameters: Vec<f64>,
+        start: Start,
+        over: (usize, Vec<f64>),
+        rule: &str,
+        span: (f64, f64),
+    ) -> PyResult<Vec<Vec<DiagramColumn>>> {
+        let section = Section { rule, skip: span.0, time: span.1 };
+        let over = (over.0, &over.1[..]);
+        let found = py.detach(|| self.0.diagram(&parameters, &guess(&start), over, &section));
+        let columns = |columns: Vec<Column>| {
+            columns.into_iter().map(|it| (it.value, pairs(it.points), it.trouble)).collect()
+        };
+        Ok(found.map_err(exception)?.into_iter().map(columns).collect())
+    }
+
+    /// The exponents, their spread, and the number of events.
+    fn exponents(
+        &self,
+        py: Python<'_>,
+        parameters: Vec<f64>,
+        start: Start,
+        span: (f64, f64),
+    ) -> PyResult<(Vec<f64>, f64, usize)> {
+        let (skip, time) = span;
+        let found = py.detach(|| self.0.exponents(&parameters, &guess(&start), skip, time));
+        found.map(|it| (it.values, it.spread, it.events)).map_err(exception)
+    }
+
+    /// The attractors as JSON, and the number of that of each run, or -1.
+    fn basins(
+        &self,
+        py: Python<'_>,
+        parameters: Vec<f64>,
+        start: Start,
+        components: [usize; 2],
+        values: (Vec<f64>, Vec<f64>),
+        time: f64,
+    ) -> PyResult<(Vec<String>, Vec<i64>)> {
+        let values = [&values.0[..], &values.1];
+        let found =
+            py.detach(|| self.0.basins(&parameters, &guess(&start), components, values, time));
+        let found = found.map_err(bad_input)?;
+        let system = self.0.system();
+        let mode = |mode: usize| system.modes[mode].name.clone();
+        let attractors = found.attractors.iter().map(|it| {
+            let written = match it {
+                Attractor::Orbit(orbit) => json!({ "orbit": OrbitRecord::new(system, orbit) }),
+                Attractor::Rest { mode: at, state } => json!({ "mode": mode(*at), "state": state }),
+                Attractor::End { mode: at, rule } => {
+                    let name = system.modes[*at].rules[*rule].name(*rule);
+                    json!({ "mode": mode(*at), "rule": name })
+                }
+            };
+            serde_json::to_string(&written).map_err(failed)
+        });
+        let number = |label: Option<usize>| label.and_then(|it| i64::try_from(it).ok());
+        let labels = found.labels.iter().map(|label| number(*label).unwrap_or(-1));
+        Ok((attractors.collect::<PyResult<_>>()?, labels.collect()))
     }
 
     /// Times and states along an orbit.
@@ -117,10 +200,25 @@ impl OrbitSystem {
         record.orbit(&self.0).map_err(exception)
     }
 
+    /// A special orbit as it is written.
+    fn read_special(&self, special: &str) -> PyResult<SpecialOrbit> {
+        let record: SpecialRecord = serde_json::from_str(special).map_err(bad_input)?;
+        record.special(&self.0).map_err(bad_input)
+    }
+
     fn written(&self, found: Result<Orbit, OrbitError>) -> PyResult<String> {
-        let document = OrbitDocument::new(&self.0, "", &found.map_err(exception)?);
+        let document = Document::of_orbit(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
     }
+}
+
+fn guess(start: &Start) -> Guess<'_> {
+    let (mode, time, ref state) = *start;
+    Guess { mode, time, state: state.as_deref(), ..Guess::default() }
+}
+
+fn pairs(points: Vec<SectionPoint>) -> Points {
+    points.into_iter().map(|it| (it.s, it.state)).collect()
 }
 
 fn exception(error: OrbitError) -> PyErr {

@@ -8,14 +8,14 @@ use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint,
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::picture::PictureFile;
-use stickslip_orbits::document::{BranchDocument, OrbitRecord};
+use stickslip_orbits::document::{BranchRecord, Document, OrbitRecord};
 use stickslip_orbits::{Branch, BranchOptions, Orbit};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
-use crate::shared::orbit::{FoundOrbit, GuessArguments, failure};
+use crate::shared::orbit::{FoundOrbit, GuessArguments, component, failure};
 use crate::shared::system::{Axis, axis, place};
 
 /// Follow a periodic orbit of a system of your own over a parameter
@@ -67,7 +67,7 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
     let BranchArguments { guess, over, out, table, plot, .. } = arguments;
     let (out, table, plot) = (out.as_deref(), table.as_deref(), plot.as_ref());
     let outputs = [("--out", out), ("--table", table), plotted(plot)];
-    require_different(&outputs, &[("the system", Some(&*guess.system))])?;
+    require_different(&outputs, &[("the system", Some(&*guess.from.system))])?;
     table.map_or(Ok(()), CsvFile::probe)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
@@ -84,7 +84,7 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
     let shown = shown(arguments, &found)?;
     let range = [over.range.low, over.range.high];
     let branch = found.orbits.branch(&found.orbit, parameter, range, &options).map_err(failure)?;
-    let document = BranchDocument::new(&found.orbits, &found.name, &branch);
+    let document = Document::of_branch(&found.orbits, &found.name, &branch);
     let mut stored = Vec::new();
     if let Some(file) = file {
         stored.push(write_json(file, &document)?);
@@ -96,30 +96,26 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
         stored.push(plot.write(Ok(curve(&found, &branch, shown)))?);
     }
     deliver(stored, counted(branch.points.len(), "orbit", "orbits"))?;
-    print(|out| specials(out, &document))?;
-    let path = out.unwrap_or(&guess.system);
+    print(|out| specials(out, &document.content))?;
+    let path = out.unwrap_or(&guess.from.system);
     Failure::if_doubtful(path, "branch is", branch.objection)
 }
 
 /// The component of the picture.
 fn shown(arguments: &BranchArguments, found: &FoundOrbit) -> Result<usize, Failure> {
     let Some(name) = &arguments.show else { return Ok(0) };
-    let components = &found.orbits.system().components;
-    components.iter().position(|it| it.name == *name).ok_or_else(|| {
-        let names: Vec<_> = components.iter().map(|it| it.name.as_str()).collect();
-        Failure::Usage(format!("--show {name}: the state has {}", names.join(", ")))
-    })
+    component(found.orbits.system(), "--show", name)
 }
 
-fn specials(out: &mut dyn Write, document: &BranchDocument) -> io::Result<()> {
-    let admissible = document.points.iter().filter(|it| it.admissible).count();
-    let stable = document.points.iter().filter(|it| it.admissible && it.stable).count();
-    if document.specials.is_empty() {
+fn specials(out: &mut dyn Write, branch: &BranchRecord) -> io::Result<()> {
+    let admissible = branch.points.iter().filter(|it| it.admissible).count();
+    let stable = branch.points.iter().filter(|it| it.admissible && it.stable).count();
+    if branch.specials.is_empty() {
         writeln!(out, "No special orbit.")?;
     } else {
-        let header = ["special orbit", &document.parameter, "rule", "period"].map(str::to_owned);
-        let rows = document.specials.iter().map(|it| {
-            let rule = it.rule.clone().unwrap_or_default();
+        let header = ["special orbit", &branch.parameter, "rule", "period"].map(str::to_owned);
+        let rows = branch.specials.iter().map(|it| {
+            let rule = it.rule.rule.clone().unwrap_or_default();
             [it.kind.name().to_owned(), number(it.value), rule, number(it.orbit.period)]
         });
         text::aligned(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())?;
@@ -128,7 +124,7 @@ fn specials(out: &mut dyn Write, document: &BranchDocument) -> io::Result<()> {
     text::pairs(
         out,
         &[
-            ("orbits", document.points.len().to_string()),
+            ("orbits", branch.points.len().to_string()),
             ("followed by the system", admissible.to_string()),
             ("of these, stable", stable.to_string()),
         ],
@@ -136,12 +132,13 @@ fn specials(out: &mut dyn Write, document: &BranchDocument) -> io::Result<()> {
 }
 
 /// Writes a row for each orbit, all but the name of the file.
-fn write_table(path: &Path, document: &BranchDocument) -> Result<StoredFile, Failure> {
+fn write_table(path: &Path, document: &Document<BranchRecord>) -> Result<StoredFile, Failure> {
+    let branch = &document.content;
     let mut file = CsvFile::create(path)?;
     let mut rows = Rows::default();
-    let parameter = &document.parameter;
+    let parameter = &branch.parameter;
     rows.fields([parameter.as_str(), "special", "period", "stable", "followed", "multiplier"]);
-    let Some(first) = document.points.first() else { return Ok(file.store()?) };
+    let Some(first) = branch.points.first() else { return Ok(file.store()?) };
     for segment in 0..first.segments.len() {
         rows.field(format!("duration_{segment}"));
         rows.fields(document.components.iter().map(|it| format!("{it}_{segment}")));
@@ -167,8 +164,8 @@ fn write_table(path: &Path, document: &BranchDocument) -> Result<StoredFile, Fai
         }
         rows.end();
     };
-    let mut specials = document.specials.iter().peekable();
-    for (place, orbit) in document.points.iter().enumerate() {
+    let mut specials = branch.specials.iter().peekable();
+    for (place, orbit) in branch.points.iter().enumerate() {
         while let Some(special) = specials.next_if(|it| it.behind <= place) {
             row(&special.orbit, special.kind.name());
         }

@@ -8,7 +8,7 @@ use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint,
 use stickslip_files::input::{json, source};
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_orbits::document::{BRANCH, CurveDocument, OrbitRecord, SpecialRecord};
+use stickslip_orbits::document::{BRANCH, CurveRecord, Document, OrbitRecord, SpecialRecord};
 use stickslip_orbits::{BranchOptions, Orbits};
 use stickslip_plane::sealed;
 
@@ -16,7 +16,7 @@ use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
-use crate::shared::orbit::{MOST_BYTES, failure};
+use crate::shared::orbit::{MOST_BYTES, failure, special};
 use crate::shared::system::{Axis, axis, place, read, title};
 
 /// Follow special orbits of a system of your own over two parameters
@@ -75,7 +75,7 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
     let (system, _) = read(&arguments.system)?;
-    let record = special(arguments)?;
+    let record = read_special(arguments)?;
     let parameters = [place(&system, "--x", &x.name)?, place(&system, "--y", &y.name)?];
     if parameters[0] == parameters[1] {
         let name = &x.name;
@@ -84,12 +84,12 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
         )));
     }
     let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
-    let special = record.special(&orbits);
-    let special = special.map_err(|error| Failure::Usage(error.to_string()))?;
+    let known = record.special(&orbits);
+    let known = known.map_err(|error| Failure::Usage(error.to_string()))?;
     let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
-    let curve = orbits.curve(&special, parameters, window, &BranchOptions::default());
+    let curve = orbits.curve(&known, parameters, window, &BranchOptions::default());
     let curve = curve.map_err(failure)?;
-    let document = CurveDocument::new(&orbits, &title(&arguments.system), &curve);
+    let document = Document::of_curve(&orbits, &title(&arguments.system), &curve);
     let mut stored = Vec::new();
     if let Some(file) = file {
         stored.push(write_json(file, &document)?);
@@ -98,12 +98,12 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
         stored.push(plot.write(Ok(picture_of(&document)))?);
     }
     deliver(stored, counted(curve.points.len(), "orbit", "orbits"))?;
-    print(|out| table(out, &document))?;
+    print(|out| table(out, &document.content))?;
     Failure::if_doubtful(out.unwrap_or(&arguments.system), "curve is", curve.objection)
 }
 
 /// The special orbit of the branch.
-fn special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
+fn read_special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
     let path = &arguments.branch;
     let unusable = |reason: String| Failure::input(source::shown(path), reason);
     let text = source::read(path, MOST_BYTES)?;
@@ -112,47 +112,41 @@ fn special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
     if schema != BRANCH {
         return Err(unusable(format!("schema is {schema:?}; expected {BRANCH:?}")));
     }
-    let (kind, wanted) = arguments.kind.split_once(':').unwrap_or((&arguments.kind, "1"));
-    let count = wanted.parse::<usize>().ok().and_then(|count| count.checked_sub(1));
-    let found = specials.iter().filter(|it| it.kind.name() == kind);
-    count.and_then(|count| found.clone().nth(count)).cloned().ok_or_else(|| {
-        let known: Vec<_> = specials.iter().map(|it| it.kind.name()).collect();
-        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        Failure::Usage(format!("--kind {}: expected one of the branch: {known}", arguments.kind))
-    })
+    special(&specials, "--kind", &arguments.kind).cloned()
 }
 
 /// The parameters of an orbit.
-fn at(document: &CurveDocument, orbit: &OrbitRecord) -> [f64; 2] {
-    [0, 1].map(|k| orbit.parameters[&document.parameters[k]])
+fn at(curve: &CurveRecord, orbit: &OrbitRecord) -> [f64; 2] {
+    [0, 1].map(|k| orbit.parameters[&curve.parameters[k]])
 }
 
-fn table(out: &mut dyn Write, document: &CurveDocument) -> io::Result<()> {
-    let [x, y] = &document.parameters;
-    let header = [document.kind.name(), x, y].map(str::to_owned);
+fn table(out: &mut dyn Write, curve: &CurveRecord) -> io::Result<()> {
+    let [x, y] = &curve.parameters;
+    let header = [curve.kind.name(), x, y].map(str::to_owned);
     let row = |name: &str, orbit: &OrbitRecord| {
-        let [x, y] = at(document, orbit);
+        let [x, y] = at(curve, orbit);
         [name.to_owned(), number(x), number(y)]
     };
-    let ends = [document.points.first(), document.points.last()];
+    let ends = [curve.points.first(), curve.points.last()];
     let ends = ends.into_iter().flatten().map(|it| row("end", it));
-    let meetings = document.meetings.iter().map(|it| row(it.kind.name(), &it.orbit));
+    let meetings = curve.meetings.iter().map(|it| row(it.kind.name(), &it.orbit));
     text::aligned(out, &std::iter::once(header).chain(ends).chain(meetings).collect::<Vec<_>>())
 }
 
-fn picture_of(document: &CurveDocument) -> stickslip_figure::Svg {
-    let points = document.points.iter();
-    let meetings = document.meetings.iter().map(|it| SpecialPoint {
+fn picture_of(document: &Document<CurveRecord>) -> stickslip_figure::Svg {
+    let curve = &document.content;
+    let points = curve.points.iter();
+    let meetings = curve.meetings.iter().map(|it| SpecialPoint {
         name: it.kind.name(),
-        at: at(document, &it.orbit),
+        at: at(curve, &it.orbit),
         behind: it.behind,
     });
-    let kind = document.kind.name();
+    let kind = curve.kind.name();
     draw(&BranchCurve {
         title: &format!("{}: {kind} of a periodic orbit", document.system),
-        axes: [&document.parameters[0], &document.parameters[1]],
+        axes: [&curve.parameters[0], &curve.parameters[1]],
         points: points
-            .map(|it| BranchPoint { at: at(document, it), stretch: Stretch::Special })
+            .map(|it| BranchPoint { at: at(curve, it), stretch: Stretch::Special })
             .collect(),
         specials: meetings.collect(),
     })

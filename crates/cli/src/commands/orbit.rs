@@ -8,7 +8,7 @@ use stickslip_figure::pictures::{self, run::Run};
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_orbits::document::OrbitDocument;
+use stickslip_orbits::document::{Document, OneOrbit};
 
 use crate::error::Failure;
 use crate::output::console::{deliver, print};
@@ -46,12 +46,12 @@ pub struct OrbitArguments {
 pub fn run(arguments: &OrbitArguments) -> Result<(), Failure> {
     let OrbitArguments { guess, format, out, plot } = arguments;
     let (out, plot) = (out.as_deref(), plot.as_ref());
-    let system = ("the system", Some(&*guess.system));
+    let system = ("the system", Some(&*guess.from.system));
     require_different(&[("--out", out), plotted(plot)], &[system])?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
     let found = guess.find()?;
-    let document = OrbitDocument::new(&found.orbits, &found.name, &found.orbit);
+    let document = Document::of_orbit(&found.orbits, &found.name, &found.orbit);
     let mut stored = Vec::new();
     if let Some(file) = file {
         stored.push(write_json(file, &document)?);
@@ -66,15 +66,16 @@ pub fn run(arguments: &OrbitArguments) -> Result<(), Failure> {
     })
 }
 
-fn table(out: &mut dyn Write, found: &FoundOrbit, document: &OrbitDocument) -> io::Result<()> {
-    let orbit = &document.orbit;
+fn table(out: &mut dyn Write, found: &FoundOrbit, document: &Document<OneOrbit>) -> io::Result<()> {
+    let orbit = &document.content.orbit;
     for (parameter, value) in found.orbits.system().parameters.iter().zip(&found.orbit.parameters) {
         writeln!(out, "{} = {value}", parameter.name)?;
     }
     writeln!(out)?;
     let header = ["segment", "mode", "until", "duration"].map(str::to_owned);
     let rows = orbit.segments.iter().enumerate().map(|(place, it)| {
-        [place.to_string(), it.mode.clone(), it.rule.clone(), number(it.duration)]
+        let leg = &it.leg;
+        [place.to_string(), leg.mode.clone(), leg.rule.clone(), number(it.duration)]
     });
     text::aligned(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())?;
     writeln!(out)?;

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use stickslip_expression::System;
 use stickslip_files::input::{json, number, source};
-use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord};
+use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord, SpecialRecord};
 use stickslip_orbits::{Guess, Orbit, OrbitError, Orbits};
 use stickslip_plane::sealed;
 
 use super::system::{place as parameter, read, setting, time, title, values};
 use crate::error::Failure;
 
-/// The orbit of a system.
+/// A system, and where its runs start.
 #[derive(Debug, clap::Args)]
-pub struct GuessArguments {
+pub struct StartArguments {
     /// The system, a text as docs/systems.md describes it; - is standard input
     #[arg(value_name = "SYSTEM.slip")]
     pub system: PathBuf,
@@ -22,6 +22,27 @@ pub struct GuessArguments {
     /// The value of a parameter; may be repeated
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "System")]
     pub set: Vec<(String, f64)>,
+
+    /// The value of a component at the start, instead of that of the system; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "System")]
+    pub start: Vec<(String, f64)>,
+
+    /// The mode at the start, instead of that of the system
+    #[arg(long, value_name = "MODE", help_heading = "System")]
+    pub mode: Option<String>,
+
+    /// The time at the start, instead of that of the system
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(help_heading = "System")]
+    pub time: Option<f64>,
+}
+
+/// The orbit of a system.
+#[derive(Debug, clap::Args)]
+pub struct GuessArguments {
+    /// The system, and where the orbit starts about.
+    #[command(flatten)]
+    pub from: StartArguments,
 
     /// The rules that end the segments of the orbit, in order
     #[arg(long, value_name = "RULE,RULE,…", value_delimiter = ',', help_heading = "Guess")]
@@ -39,18 +60,11 @@ pub struct GuessArguments {
     #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
     pub near: Option<PathBuf>,
 
-    /// The value of a component at the start, instead of that of the system; may be repeated
-    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, help_heading = "Guess")]
-    pub start: Vec<(String, f64)>,
-
-    /// The mode at the start, instead of that of the system
-    #[arg(long, value_name = "MODE", help_heading = "Guess")]
-    pub mode: Option<String>,
-
-    /// The time at the start, instead of that of the system
-    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    #[arg(help_heading = "Guess")]
-    pub time: Option<f64>,
+    /// Of a branch in the file of --near: the orbit of twice the period that begins at a flip, or an
+    /// orbit of the other branch at a branch-point; the first of the kind, or the N-th with KIND:N
+    #[arg(long, value_name = "KIND[:N]", help_heading = "Guess", requires = "near")]
+    #[arg(conflicts_with = "set")]
+    pub switch: Option<String>,
 
     /// The durations of the segments; otherwise each is up to where its rule acts
     #[arg(long, value_name = "T,T,…", value_delimiter = ',', value_parser = number::parse_option)]
@@ -64,10 +78,29 @@ struct Written {
     schema: String,
     orbit: Option<OrbitRecord>,
     points: Option<Vec<OrbitRecord>>,
+    parameter: Option<String>,
+    #[serde(default)]
+    specials: Vec<SpecialRecord>,
 }
 
+/// How far from a special orbit another branch is entered.
+const ASIDE: f64 = 0.05;
 /// Largest number of bytes of a file.
 pub const MOST_BYTES: u64 = 1 << 30;
+
+/// A system with the start of its runs.
+#[derive(Debug)]
+pub struct StartedSystem {
+    /// The name of the system in titles.
+    pub name: String,
+    /// The orbits of the system.
+    pub orbits: Orbits,
+    /// The values of its parameters.
+    pub parameters: Vec<f64>,
+    mode: Option<usize>,
+    time: Option<f64>,
+    state: Option<Vec<f64>>,
+}
 
 /// An orbit that was found, with its system.
 #[derive(Debug)]
@@ -80,55 +113,27 @@ pub struct FoundOrbit {
     pub orbit: Orbit,
 }
 
-impl GuessArguments {
-    /// Finds the orbit.
-    pub fn find(&self) -> Result<FoundOrbit, Failure> {
+impl StartedSystem {
+    /// The start, as a guess without an itinerary.
+    pub fn guess(&self) -> Guess<'_> {
+        let Self { mode, time, ref state, .. } = *self;
+        Guess { mode, time, state: state.as_deref(), ..Guess::default() }
+    }
+}
+
+impl StartArguments {
+    /// Reads the system.
+    ///
+    /// # Errors
+    /// [`Failure`]: it cannot be read, or options do not fit it.
+    pub fn read(&self) -> Result<StartedSystem, Failure> {
         let (system, _) = read(&self.system)?;
-        if let Some(path) = &self.near {
-            return self.near(&system, path);
-        }
         let parameters = values(&system, &self.set)?;
         let mode = self.mode.as_deref().map(|name| place(&system, name)).transpose()?;
         let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
         let state = self.state(&system, &parameters)?;
-        let itinerary: Vec<&str> = self.itinerary.iter().map(String::as_str).collect();
-        let guess = Guess {
-            mode,
-            time: self.time,
-            state: state.as_deref(),
-            itinerary: &itinerary,
-            durations: self.durations.as_deref(),
-        };
-        let orbit = match self.settle {
-            Some(time) => orbits.settled(&parameters, &guess, time),
-            None => orbits.find(&parameters, &guess),
-        };
-        let orbit = orbit.map_err(failure)?;
-        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
-    }
-
-    /// The orbit near that of a file.
-    fn near(&self, system: &System, path: &Path) -> Result<FoundOrbit, Failure> {
-        let shown = source::shown(path);
-        let unusable = |reason: String| Failure::input(shown, reason);
-        let text = source::read(path, MOST_BYTES)?;
-        sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
-        let written: Written = json::parse(&text).map_err(unusable)?;
-        let record = match (&*written.schema, written.orbit, written.points) {
-            (ORBIT, Some(orbit), _) => Some(orbit),
-            (BRANCH, _, Some(mut points)) => points.pop(),
-            _ => None,
-        };
-        let expected = format!("expected an orbit in the layout {ORBIT:?} or {BRANCH:?}");
-        let record = record.ok_or_else(|| unusable(expected))?;
-        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
-        let orbit = record.orbit(&orbits).map_err(failure)?;
-        let mut parameters = orbit.parameters.clone();
-        for (name, value) in &self.set {
-            parameters[parameter(system, "--set", name)?] = *value;
-        }
-        let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
-        Ok(FoundOrbit { name: title(&self.system), orbits, orbit })
+        let (name, time) = (title(&self.system), self.time);
+        Ok(StartedSystem { name, orbits, parameters, mode, time, state })
     }
 
     /// The state at the start, if some component has another value than the system says.
@@ -140,16 +145,93 @@ impl GuessArguments {
             system.with(parameters).map_err(|error| Failure::Usage(error.to_string()))?;
         let mut state = runnable.start().state.to_vec();
         for (name, value) in &self.start {
-            let place = system.components.iter().position(|it| it.name == *name);
-            let names: Vec<_> = system.components.iter().map(|it| it.name.as_str()).collect();
-            let unknown = || {
-                let known = names.join(", ");
-                Failure::Usage(format!("--start {name}: the state has {known}"))
-            };
-            state[place.ok_or_else(unknown)?] = *value;
+            state[component(system, "--start", name)?] = *value;
         }
         Ok(Some(state))
     }
+}
+
+impl GuessArguments {
+    /// Finds the orbit.
+    ///
+    /// # Errors
+    /// [`Failure`]: the system cannot be read, options do not fit it, or there is no orbit.
+    pub fn find(&self) -> Result<FoundOrbit, Failure> {
+        if let Some(path) = &self.near {
+            return self.near(path);
+        }
+        let started = self.from.read()?;
+        let itinerary: Vec<&str> = self.itinerary.iter().map(String::as_str).collect();
+        let (itinerary, durations) = (&itinerary[..], self.durations.as_deref());
+        let guess = Guess { itinerary, durations, ..started.guess() };
+        let orbit = match self.settle {
+            Some(time) => started.orbits.settled(&started.parameters, &guess, time),
+            None => started.orbits.find(&started.parameters, &guess),
+        };
+        let orbit = orbit.map_err(failure)?;
+        Ok(FoundOrbit { name: started.name, orbits: started.orbits, orbit })
+    }
+
+    /// The orbit near that of a file.
+    fn near(&self, path: &Path) -> Result<FoundOrbit, Failure> {
+        let (system, _) = read(&self.from.system)?;
+        let system = &system;
+        let shown = source::shown(path);
+        let unusable = |reason: String| Failure::input(shown, reason);
+        let text = source::read(path, MOST_BYTES)?;
+        sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
+        let written: Written = json::parse(&text).map_err(unusable)?;
+        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
+        let name = title(&self.from.system);
+        if let Some(kind) = &self.switch {
+            let (BRANCH, Some(points), Some(over)) =
+                (&*written.schema, &written.points, &written.parameter)
+            else {
+                return Err(unusable(format!("expected a branch in the layout {BRANCH:?}")));
+            };
+            let record = special(&written.specials, "--switch", kind)?;
+            let beside = points.get(record.behind.saturating_sub(1));
+            let beside = beside.ok_or_else(|| unusable("has no orbit beside it".to_owned()))?;
+            let known = record.special(&orbits).map_err(|error| unusable(error.to_string()))?;
+            let beside = beside.orbit(&orbits).map_err(failure)?;
+            let over = parameter(system, "--near", over)?;
+            let orbit = orbits.switched(&known, &beside, over, ASIDE).map_err(failure)?;
+            return Ok(FoundOrbit { name, orbits, orbit });
+        }
+        let record = match (&*written.schema, written.orbit, written.points) {
+            (ORBIT, Some(orbit), _) => Some(orbit),
+            (BRANCH, _, Some(mut points)) => points.pop(),
+            _ => None,
+        };
+        let expected = format!("expected an orbit in the layout {ORBIT:?} or {BRANCH:?}");
+        let record = record.ok_or_else(|| unusable(expected))?;
+        let orbit = record.orbit(&orbits).map_err(failure)?;
+        let mut parameters = orbit.parameters.clone();
+        for (name, value) in &self.from.set {
+            parameters[parameter(system, "--set", name)?] = *value;
+        }
+        let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
+        Ok(FoundOrbit { name, orbits, orbit })
+    }
+}
+
+/// The special orbit that an option names: the first one of a kind, or the N-th.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is none.
+pub fn special<'a>(
+    specials: &'a [SpecialRecord],
+    option: &str,
+    given: &str,
+) -> Result<&'a SpecialRecord, Failure> {
+    let (kind, wanted) = given.split_once(':').unwrap_or((given, "1"));
+    let count = wanted.parse::<usize>().ok().and_then(|count| count.checked_sub(1));
+    let mut found = specials.iter().filter(|it| it.kind.name() == kind);
+    count.and_then(|count| found.nth(count)).ok_or_else(|| {
+        let known: Vec<_> = specials.iter().map(|it| it.kind.name()).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Failure::Usage(format!("{option} {given}: expected one of the branch: {known}"))
+    })
 }
 
 /// Why there is no orbit, as the program says it.
@@ -166,5 +248,17 @@ fn place(system: &System, name: &str) -> Result<usize, Failure> {
     place.ok_or_else(|| {
         let names: Vec<_> = system.modes.iter().map(|it| it.name.as_str()).collect();
         Failure::Usage(format!("--mode {name}: expected one of {}", names.join(", ")))
+    })
+}
+
+/// The place of a component.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is no such component.
+pub fn component(system: &System, option: &str, name: &str) -> Result<usize, Failure> {
+    let place = system.components.iter().position(|it| it.name == *name);
+    place.ok_or_else(|| {
+        let names: Vec<_> = system.components.iter().map(|it| it.name.as_str()).collect();
+        Failure::Usage(format!("{option} {name}: the state has {}", names.join(", ")))
     })
 }

@@ -4,8 +4,9 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 23] = [
+const PAGES: [&str; 25] = [
     "stickslip-asymptote.1",
+    "stickslip-basins.1",
     "stickslip-branch.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
@@ -22,6 +23,7 @@ const PAGES: [&str; 23] = [
     "stickslip-orbit.1",
     "stickslip-reproduce.1",
     "stickslip-run.1",
+    "stickslip-section.1",
     "stickslip-stack.1",
     "stickslip-system.1",
     "stickslip-table.1",

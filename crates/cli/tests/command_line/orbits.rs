@@ -82,12 +82,57 @@ fn a_branch_is_followed_and_written() {
     assert_eq!(near.code, 0, "{}", near.stderr);
     let near: Value = serde_json::from_str(&near.stdout).unwrap();
     assert_eq!(near["orbit"]["parameters"]["a"], 0.048);
+    // The orbit of twice the period that begins at the flip.
+    let doubled = directory.run("orbit ball.slip --near branch.json --switch flip --format json");
+    assert_eq!(doubled.code, 0, "{}", doubled.stderr);
+    let doubled: Value = serde_json::from_str(&doubled.stdout).unwrap();
+    assert!((doubled["orbit"]["period"].as_f64().unwrap() - 2.0).abs() < 1e-12);
+    let fold = directory.run("orbit ball.slip --near branch.json --switch fold");
+    assert!(fold.stderr.contains("expected a `flip` or a `branch-point`"), "{}", fold.stderr);
     let damaged = directory.read("branch.json").replacen("\"period\":1.0", "\"period\":1.1", 1);
     directory.write("damaged.json", &damaged);
     let refused = directory.run("orbit ball.slip --near damaged.json");
     assert_eq!(refused.code, 2, "{}", refused.stderr);
     let picture = directory.read("branch.svg");
     assert!(picture.contains("stable") && picture.contains("flip") && picture.contains("fold"));
+}
+
+#[test]
+fn sections_and_basins_are_written() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL);
+    let ran = directory.run(
+        "section ball.slip --rule bounce --skip 200 --for 20 --table points.csv --plot points.svg",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let table = rows(&directory.read("points.csv"));
+    assert_eq!((table[0].join(","), table.len()), ("t,x,v,phase".to_owned(), 21));
+    // The product of the multipliers is r², and the phase neither grows nor shrinks.
+    let said = ran.stdout.lines().find(|line| line.contains("exponents")).expect("exponents");
+    let (_, said) = said.split_at("Lyapunov exponents".len());
+    let said: Vec<f64> = said.split(',').map(|it| it.trim().parse().expect("a number")).collect();
+    assert!((said.iter().sum::<f64>() - 2.0 * 0.7_f64.ln()).abs() < 0.05, "{said:?}");
+    let diagram = |threads: usize| {
+        let ran = directory.run(&format!(
+            "section ball.slip --rule bounce --skip 50 --for 10 --over a=0.02:0.03 --values 5 \
+             --table diagram.csv --plot diagram.svg --show v --threads {threads}"
+        ));
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        assert!(directory.read("diagram.svg").contains("downwards"));
+        directory.read("diagram.csv")
+    };
+    let alone = diagram(1);
+    assert_eq!(rows(&alone)[0].join(","), "a,direction,t,x,v,phase");
+    assert_eq!(alone, diagram(2));
+    let ran = directory.run(
+        "basins ball.slip --x x=0.014:0.02 --y v=0.4:0.6 --size 3x2 --settle 200 --table basins.csv \
+         --plot basins.svg",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(ran.stdout.contains("orbit of period 1.000000000"), "{}", ran.stdout);
+    let table = rows(&directory.read("basins.csv"));
+    assert_eq!((table[0].join(","), table.len()), ("x,v,attractor".to_owned(), 7));
+    assert!(directory.read("basins.svg").starts_with("<svg"));
 }
 
 #[test]
@@ -104,6 +149,11 @@ fn what_has_no_orbit_is_refused() {
             "--start y: the state has x, v, phase",
         ),
         ("orbit ball.slip --itinerary period --set b=1", 2, "--set b: the system has no such"),
+        ("section ball.slip --rule bonce --for 1", 2, "which has bounce, period"),
+        ("section ball.slip --rule bounce --for 0", 2, "the time on the section = 0"),
+        ("section ball.slip --rule bounce --for 1 --over b=0:1", 2, "--over b"),
+        ("basins ball.slip --x x=0:1 --y x=0:1 --settle 1", 2, "the places of two of 3"),
+        ("basins ball.slip --x x=0:1 --y y=0:1 --settle 1", 2, "--y y: the state has x, v, phase"),
         ("orbit ball.slip --settle 0.5", 1, "the run does not settle"),
         ("branch ball.slip --itinerary period,bounce --over b=0:1", 2, "--over b"),
         ("branch ball.slip --itinerary period,bounce --over a=1:2", 2, "a = 0.02 is out of range"),

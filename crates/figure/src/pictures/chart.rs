@@ -65,6 +65,8 @@ pub struct Mark {
 /// Shapes of marks, which can be told apart without their colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
+    /// A small filled circle, for many points.
+    Dot,
     /// A filled circle ●.
     Disc,
     /// A circle ○.
@@ -83,6 +85,8 @@ const COLUMN: f64 = 400.0;
 const FRAME_HEIGHT: f64 = 440.0;
 /// Half the size of a mark.
 const SIZE: f64 = 3.5;
+/// The radius of a small mark.
+const DOT: f64 = 1.0;
 
 /// Draws `chart`.
 pub fn draw(chart: &Chart<'_>) -> Svg {
@@ -161,6 +165,7 @@ impl Mark {
     fn draw(self, svg: &mut Svg, (x, y): (f64, f64)) {
         let stroke = Stroke::full(self.colour, 1.6);
         match self.shape {
+            Shape::Dot => svg.disc((x, y), DOT, self.colour),
             Shape::Disc => svg.disc((x, y), SIZE, self.colour),
             Shape::Ring => svg.ring((x, y), SIZE, stroke),
             Shape::Square => svg.fill(

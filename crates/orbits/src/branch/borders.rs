@@ -26,6 +26,16 @@ impl Borders {
     }
 }
 
+/// The plane that the derivatives of a branch map to about zero: both branches that meet at a point
+/// lie in it.
+pub(super) fn plane(slopes: &DMatrix<f64>) -> Option<[DVector<f64>; 2]> {
+    let svd = slopes.clone().insert_row(slopes.nrows(), 0.0).svd(false, true);
+    let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
+    order.sort_by(|one, other| svd.singular_values[*one].total_cmp(&svd.singular_values[*other]));
+    let (rows, [one, other]) = (svd.v_t?, [*order.first()?, *order.get(1)?]);
+    Some([one, other].map(|row| rows.row(row).transpose()))
+}
+
 /// The left and the right singular vector of the least singular value.
 pub(super) fn null_vectors(matrix: &DMatrix<f64>) -> (DVector<f64>, DVector<f64>) {
     let svd = matrix.clone().svd(true, true);

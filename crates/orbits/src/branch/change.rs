@@ -1,11 +1,11 @@
 //! Where a system begins or ceases to follow the orbits of a branch.
 
-use stickslip_expression::{Formula, Graph, Inputs, Program, Rule, Trigger, Variable};
+use stickslip_expression::{Inputs, Program, Rule, Trigger};
 use stickslip_solver::{Direction, EmbeddedPair};
 
 use super::point::{Along, Point};
 use super::{SpecialKind, SpecialOrbit};
-use crate::equations::Equations;
+use crate::equations::{Equations, Event, rate};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after};
 use crate::orbit::{Obstacle, Verdict};
@@ -94,33 +94,19 @@ impl Along<'_> {
         obstacle: &Obstacle,
     ) -> Vec<(SpecialKind, usize, Option<usize>, Margin)> {
         let legs = self.equations.legs();
-        let slides = |leg: Leg, point: &Point, segment: usize| {
-            let own = leg.rule(&self.orbits.system);
-            let (above, below) = modes_after(own, leg.mode);
-            let segments = &point.orbit.segments[segment];
-            let s = point.orbit.start;
+        let system = &self.orbits.system;
+        // Whether a mode to which a rule leads slides along what the rule waits for.
+        let slides = |leg: Leg, segment: usize| {
+            let (above, below) = modes_after(leg.rule(system), leg.mode);
             [above, below].into_iter().any(|next| {
                 next != leg.mode
-                    && [&segments.state, &segments.end].into_iter().all(|state| {
-                        let leg = Leg { next, ..leg };
-                        let parameters = &point.orbit.parameters;
-                        let event =
-                            Equations::event(&self.orbits.system, leg, parameters, (s, state));
-                        event.slides_behind()
-                    })
+                    && self.at_both_ends(from, segment, Leg { next, ..leg }, Event::slides_behind)
             })
         };
         match *obstacle {
             Obstacle::Acts { segment, rule, .. } => {
-                let previous = segment.checked_sub(1).unwrap_or(legs.len() - 1);
                 let leg = Leg { rule, ..legs[segment] };
-                let inner = if slides(leg, from, segment) {
-                    SpecialKind::GrazingSliding
-                } else if from.evaluation.ends[previous].event.slides_behind() {
-                    SpecialKind::AddingSliding
-                } else {
-                    SpecialKind::Grazing
-                };
+                let inner = self.touch(from, segment, slides(leg, segment));
                 let corner = SpecialKind::CornerCollision;
                 vec![
                     (inner, segment, Some(rule), Margin::Inner { segment, rule }),
@@ -130,12 +116,8 @@ impl Along<'_> {
             }
             Obstacle::Branches { segment, .. } => {
                 let own = from.evaluation.ends[segment].event.slides_behind();
-                let (above, below) =
-                    modes_after(legs[segment].rule(&self.orbits.system), legs[segment].mode);
-                let other = if legs[segment].next == above { below } else { above };
-                let slides = slides(Leg { next: other, ..legs[segment] }, from, segment);
-                let kind =
-                    if own || slides { SpecialKind::SlidingEdge } else { SpecialKind::Choice };
+                let edge = own || slides(legs[segment], segment);
+                let kind = if edge { SpecialKind::SlidingEdge } else { SpecialKind::Choice };
                 vec![(kind, segment, Some(legs[segment].rule), Margin::Choice { segment })]
             }
             Obstacle::Backwards { segment } => {
@@ -146,6 +128,44 @@ impl Along<'_> {
         }
     }
 
+    /// What a condition that touches zero on a segment is called. Its rule may lead to sliding
+    /// along what is touched; or the segment slides, and the rule ends that.
+    pub fn touch(&self, point: &Point, segment: usize, slides_behind: bool) -> SpecialKind {
+        let own = self.equations.legs()[segment].mode;
+        let modes = self.orbits.system.modes.iter().enumerate().filter(|(mode, _)| *mode != own);
+        let mut ways = modes.flat_map(|(mode, it)| {
+            let rules = it.rules.iter().enumerate();
+            let leading = rules.filter(move |(_, rule)| {
+                let (above, below) = modes_after(rule, mode);
+                above == own || below == own
+            });
+            leading.map(move |(rule, _)| Leg { mode, rule, next: own })
+        });
+        let stays = |event: &Event| self.equations.is_at(event) && event.slides_behind();
+        if slides_behind {
+            SpecialKind::GrazingSliding
+        } else if ways.any(|way| self.at_both_ends(point, segment, way, stays)) {
+            SpecialKind::AddingSliding
+        } else {
+            SpecialKind::Grazing
+        }
+    }
+
+    /// Whether something holds of the rule of a leg in the states at both ends of a segment.
+    fn at_both_ends(
+        &self,
+        point: &Point,
+        segment: usize,
+        leg: Leg,
+        holds: impl Fn(&Event) -> bool,
+    ) -> bool {
+        let (orbit, own) = (&point.orbit, &point.orbit.segments[segment]);
+        [&own.state, &own.end].into_iter().all(|state| {
+            let at = (orbit.start, &state[..]);
+            holds(&Equations::event(&self.orbits.system, leg, &orbit.parameters, at))
+        })
+    }
+
     /// A function that is positive where there is no obstacle, if it has a value.
     pub fn margin(&self, margin: &Margin, point: &Point) -> Option<f64> {
         let orbit = &point.orbit;
@@ -153,17 +173,12 @@ impl Along<'_> {
             Margin::Choice { segment } => Some(point.evaluation.ends[segment].event.choice),
             Margin::Duration { segment } => Some(orbit.segments[segment].duration),
             Margin::AtEnd { segment, rule } => {
-                let s: f64 = orbit.segments[..=segment].iter().map(|it| it.duration).sum();
-                self.condition(
-                    point,
-                    (segment, rule),
-                    (orbit.start + s, &orbit.segments[segment].end),
-                )
+                let end = &orbit.segments[segment].end;
+                self.condition(point, (segment, rule), (orbit.time(segment + 1), end))
             }
             Margin::AtStart { segment, rule } => {
-                let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
                 let state = &orbit.segments[segment].state;
-                self.condition(point, (segment, rule), (orbit.start + s, state))
+                self.condition(point, (segment, rule), (orbit.time(segment), state))
             }
             Margin::Inner { segment, rule } => self.least_extremum(point, (segment, rule)),
         }
@@ -202,9 +217,7 @@ impl Along<'_> {
         let extremum = Rule::new(Trigger::When(rate, Direction::Either));
         alone.modes[leg.mode].rules = vec![extremum];
         let orbit = &point.orbit;
-        let s: f64 = orbit.segments[..segment].iter().map(|it| it.duration).sum();
-        let own = &orbit.segments[segment];
-        let start = orbit.start + s;
+        let (own, start) = (&orbit.segments[segment], orbit.time(segment));
         let runnable = alone.with(&orbit.parameters).ok()?;
         let runnable = runnable.starting(Some(leg.mode), Some(start), Some(&own.state)).ok()?;
         let mut events = Vec::new();
@@ -234,13 +247,4 @@ pub(super) enum Margin {
     Choice { segment: usize },
     /// The duration of a segment.
     Duration { segment: usize },
-}
-
-/// The rate of a formula along slopes.
-fn rate(graph: &mut Graph, formula: Formula, slopes: &[Formula]) -> Formula {
-    graph.slope(formula, &mut |graph, variable| match variable {
-        Variable::Time => graph.constant(1.0),
-        Variable::Component(place) => slopes[place as usize],
-        Variable::Parameter(_) => graph.constant(0.0),
-    })
 }

@@ -10,9 +10,9 @@ use stickslip_expression::InvalidValue;
 use super::borders::{Borders, null_vectors};
 use super::change::Margin;
 use super::locate::zero;
-use super::point::{Along, Point};
+use super::point::{Along, LEAST_TURN, NO_DIRECTION, Point};
 use super::test::Test;
-use super::{BranchOptions, SpecialKind, SpecialOrbit};
+use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
@@ -21,22 +21,21 @@ use crate::orbit::Orbit;
 
 /// How far unknowns are moved for differences.
 const APART: f64 = 1e-5;
-/// The least cosine of the angle between the tangents at two neighbours.
-const LEAST_TURN: f64 = 0.95;
 
 /// Special orbits of one kind over two parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpecialCurve {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpecialCurve<P = usize, O = Orbit> {
     /// Their kind.
     pub kind: SpecialKind,
     /// The parameters, by their places in the system.
-    pub parameters: [usize; 2],
+    pub parameters: [P; 2],
     /// The window, an interval for each parameter.
     pub window: [[f64; 2]; 2],
     /// The orbits, in the order of the curve.
-    pub points: Vec<Orbit>,
+    pub points: Vec<O>,
     /// Orbits at which something else changes too, in the order of the curve.
-    pub meetings: Vec<Meeting>,
+    pub meetings: Vec<Meeting<O>>,
     /// Whether the curve comes back to its start.
     pub closed: bool,
     /// Why the curve is not complete.
@@ -45,7 +44,8 @@ pub struct SpecialCurve {
 
 /// An orbit that is special twice.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Meeting {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Meeting<O = Orbit> {
     /// What changes besides. On a curve of `neimark-sacker`, `fold` is the resonance 1:1 and `flip`
     /// the resonance 1:2.
     pub kind: SpecialKind,
@@ -54,7 +54,7 @@ pub struct Meeting {
     /// The number of points of the curve before it.
     pub behind: usize,
     /// The orbit.
-    pub orbit: Orbit,
+    pub orbit: O,
 }
 
 /// What is zero along a curve.
@@ -92,19 +92,11 @@ impl Orbits {
     ) -> Result<SpecialCurve, OrbitError> {
         options.validate()?;
         self.compiled.with(&special.orbit.parameters)?;
-        let count = self.system.parameters.len();
         let [one, other] = parameters;
-        let expected = format!("the places of two of {count} parameters");
-        let known = one != other && one.max(other) < count;
-        InvalidValue::check("the parameters", one.max(other), expected, known)?;
-        for (place, [low, high]) in parameters.into_iter().zip(window) {
-            let name = &self.system.parameters[place].name;
-            let range = format!("the range of {name}");
-            let ordered = low < high && low.is_finite() && high.is_finite();
-            InvalidValue::check(range, [low, high], "LO:HI, finite, with LO < HI", ordered)?;
-            let value = special.orbit.parameters[place];
-            let expected = format!("a value in the range {low:?}:{high:?} of the curve");
-            InvalidValue::check(name.clone(), value, expected, (low..=high).contains(&value))?;
+        let expected = "the places of two parameters";
+        InvalidValue::check("the parameters", one, expected, one != other)?;
+        for (place, range) in parameters.into_iter().zip(window) {
+            self.require_range(&special.orbit, place, range)?;
         }
         let segments = &special.orbit.segments;
         let segment = special.segment.unwrap_or(0);
@@ -121,41 +113,15 @@ impl Orbits {
         let follower = Follower { along, special, window };
         // The special orbit may have been written and read.
         let start = follower.ahead(&follower.first(&equations.place(&draft))?, 0.0, None)?;
-        let (mut ahead, closed) = follower.half(&start, options);
-        let mut curve = SpecialCurve {
-            kind: special.kind,
-            parameters,
-            window,
-            points: Vec::new(),
-            meetings: Vec::new(),
-            closed,
-            objection: ahead.objection.take(),
-        };
-        let mut before = 0;
-        if !closed {
-            let turned = Station { tangent: -&start.tangent, ..start.clone() };
-            let (back, _) = follower.half(&turned, options);
-            before = back.points.len();
-            curve.points.extend(back.points.into_iter().rev());
-            let turned = back.meetings.into_iter().rev();
-            let turned = turned.map(|it| Meeting { behind: before + 1 - it.behind, ..it });
-            curve.meetings.extend(turned);
-            curve.objection = curve.objection.or(back.objection);
-        }
-        curve.points.push(self.judged(&equations, &start.point.orbit)?);
-        curve.points.extend(ahead.points);
-        let shifted = ahead.meetings.into_iter();
-        curve.meetings.extend(shifted.map(|it| Meeting { behind: before + it.behind, ..it }));
-        Ok(curve)
+        let ahead = follower.half(&start, options);
+        let turned = Station { tangent: -&start.tangent, ..start.clone() };
+        let back = (!ahead.closed).then(|| follower.half(&turned, options));
+        let start = self.judged(&equations, &start.point.orbit)?;
+        let Half { points, specials: meetings, closed, objection } =
+            ahead.joined(start, back, |meeting| &mut meeting.behind);
+        let kind = special.kind;
+        Ok(SpecialCurve { kind, parameters, window, points, meetings, closed, objection })
     }
-}
-
-/// One end of a curve.
-#[derive(Default)]
-struct Half {
-    points: Vec<Orbit>,
-    meetings: Vec<Meeting>,
-    objection: Option<String>,
 }
 
 impl Follower<'_> {
@@ -240,7 +206,7 @@ impl Follower<'_> {
         let tracked = self.tracked(&point)?;
         let gradient = self.gradient(&tracked, place);
         let tangent = direction(&point.evaluation.slopes, &gradient, None);
-        tangent.map(|tangent| Station { point, tangent }).ok_or_else(no_direction)
+        tangent.map(|tangent| Station { point, tangent }).ok_or(NO_DIRECTION)
     }
 
     /// The station ahead of another one by a length along its tangent, or where a parameter has a
@@ -267,7 +233,7 @@ impl Follower<'_> {
         let point = self.along.sketch(found.at)?;
         let gradient = self.gradient(&tracked, &point.place);
         let tangent = direction(&point.evaluation.slopes, &gradient, Some(&from.tangent));
-        tangent.map(|tangent| Station { point, tangent }).ok_or_else(no_direction)
+        tangent.map(|tangent| Station { point, tangent }).ok_or(NO_DIRECTION)
     }
 
     /// The parameters at a place, in parts of the lengths of their ranges.
@@ -309,15 +275,15 @@ impl Follower<'_> {
         Ok((last, true))
     }
 
-    /// Follows a curve in one direction, without its first point; and whether it is closed.
-    fn half(&self, start: &Station, options: &BranchOptions) -> (Half, bool) {
+    /// Follows a curve in one direction, without its first point.
+    fn half(&self, start: &Station, options: &BranchOptions) -> Half<Meeting> {
         let (mut half, mut last) = (Half::default(), start.clone());
         let mut step = options.first_step;
         loop {
             if half.points.len() + 1 >= options.most_points {
                 let most = options.most_points;
                 half.objection = Some(format!("the curve goes on behind {most} points"));
-                return (half, false);
+                return half;
             }
             let (next, is_last) = match self.next(&last, step) {
                 Ok(found) => found,
@@ -328,12 +294,12 @@ impl Follower<'_> {
                 Err(error) => {
                     let at = &last.point.orbit.parameters;
                     half.objection = Some(format!("the curve breaks off at {at:?}: {error}"));
-                    return (half, false);
+                    return half;
                 }
             };
             let behind = half.points.len() + 1;
             match self.meetings(&last, &next, behind) {
-                Ok(meetings) => half.meetings.extend(meetings),
+                Ok(meetings) => half.specials.extend(meetings),
                 Err(error) => half.objection = Some(format!("a meeting is not located: {error}")),
             }
             let away = &start.point.place - &last.point.place;
@@ -343,12 +309,13 @@ impl Follower<'_> {
                 && (away - along * &last.tangent).norm() < 0.2 * step
                 && last.tangent.dot(&start.tangent) > 0.9;
             if closed {
-                return (half, true);
+                half.closed = true;
+                return half;
             }
             let orbit = self.along.orbits.judged(self.along.equations, &next.point.orbit);
             half.points.push(orbit.unwrap_or_else(|_| next.point.orbit.clone()));
             if is_last {
-                return (half, false);
+                return half;
             }
             if last.tangent.dot(&next.tangent) > 0.995 {
                 step = (1.5 * step).min(options.longest_step);
@@ -400,10 +367,6 @@ impl Follower<'_> {
         found.sort_by(|one, other| one.0.total_cmp(&other.0));
         Ok(found.into_iter().map(|(_, meeting)| meeting).collect())
     }
-}
-
-fn no_direction() -> OrbitError {
-    OrbitError::NotFound { reason: "the curve has no direction", segment: 0, update: f64::NAN }
 }
 
 /// The direction of a curve, of length 1, towards the side of another one.

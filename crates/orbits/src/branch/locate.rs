@@ -7,6 +7,8 @@ use crate::error::OrbitError;
 
 /// A bracket of this part of a step is a place.
 const NARROW: f64 = 1e-13;
+/// A fold so near a branch point, in parts of a step, is that branch point.
+const BESIDE: f64 = 1e-3;
 /// The greatest number of points of a search.
 const ROUNDS: usize = 100;
 
@@ -22,9 +24,26 @@ impl Along<'_> {
             if (one < 0.0) == (other < 0.0) || other == 0.0 {
                 continue;
             }
-            let zero = self.zero(from, (length, one, other), |point| test.value(self, point))?;
+            let value = |point: &Point| test.value(self, point);
+            let meets = match test {
+                Test::BranchPoint(_) => self.meeting(from, length, one / (one - other)).ok(),
+                _ => None,
+            };
+            let zero = match meets {
+                Some(meets) => Ok(Some(meets)),
+                None => self.zero(from, (length, one, other), value),
+            };
+            let zero = match (zero, &test) {
+                // At a pitchfork the parameter may turn back.
+                (Err(_), Test::Fold) if !found.is_empty() => None,
+                (zero, _) => zero?,
+            };
             let Some((at, point)) = zero else { continue };
-            if let Some((kind, segment)) = test.kind(from, &point) {
+            let meets = found.iter().any(|(other, _)| (at - other).abs() <= BESIDE * length);
+            if matches!(test, Test::Fold) && meets {
+                continue;
+            }
+            if let Some((kind, segment)) = test.kind(self, from, &point) {
                 let rule = segment.map(|segment| self.equations.legs()[segment].rule);
                 found.push((at, self.special(kind, segment, rule, point)));
             }

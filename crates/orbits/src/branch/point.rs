@@ -10,7 +10,9 @@ use crate::newton::correct;
 use crate::orbit::Orbit;
 
 /// The least cosine of the angle between the tangents at two neighbours.
-const LEAST_TURN: f64 = 0.95;
+pub(super) const LEAST_TURN: f64 = 0.95;
+/// What is said where no direction leads on.
+pub(super) const NO_DIRECTION: OrbitError = OrbitError::nowhere("the branch has no direction");
 /// A point is not so far from the one before as so many steps.
 const FARTHEST: f64 = 1.5;
 
@@ -94,11 +96,7 @@ impl Along<'_> {
     /// The point at a place of the branch, which goes on about in a direction.
     fn point(&self, place: DVector<f64>, direction: &DVector<f64>) -> Result<Point, OrbitError> {
         let evaluation = self.equations.at(&place)?;
-        let tangent = tangent(&evaluation.slopes, direction).ok_or(OrbitError::NotFound {
-            reason: "the branch has no direction",
-            segment: 0,
-            update: f64::NAN,
-        })?;
+        let tangent = tangent(&evaluation.slopes, direction).ok_or(NO_DIRECTION)?;
         let draft = self.equations.draft(&place);
         let orbit = self.orbits.orbit(self.equations, &draft, &evaluation, 1e-13)?;
         Ok(Point { place, tangent, evaluation, orbit })

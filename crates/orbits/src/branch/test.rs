@@ -32,7 +32,7 @@ impl Test {
         let flip = Borders::of(&along.equations.returning(slopes, -1.0));
         let branch_point = Borders::of(&bordered_by_tangent(point));
         let fixed =
-            [Self::Fold, Self::Flip(flip), Self::BranchPoint(branch_point), Self::NeimarkSacker];
+            [Self::BranchPoint(branch_point), Self::Fold, Self::Flip(flip), Self::NeimarkSacker];
         fixed.into_iter().chain((0..point.evaluation.ends.len()).map(Self::Rate)).collect()
     }
 
@@ -59,7 +59,12 @@ impl Test {
 
     /// What a zero of the function at a point is called, and the segment where it is; `None` if it
     /// is not a special orbit.
-    pub fn kind(&self, before: &Point, point: &Point) -> Option<(SpecialKind, Option<usize>)> {
+    pub fn kind(
+        &self,
+        along: &Along<'_>,
+        before: &Point,
+        point: &Point,
+    ) -> Option<(SpecialKind, Option<usize>)> {
         let has = |re: f64| {
             point
                 .orbit
@@ -76,15 +81,8 @@ impl Test {
                 near.then_some((SpecialKind::NeimarkSacker, None))
             }
             Self::Rate(segment) => {
-                let ends = &before.evaluation.ends;
-                let previous = segment.checked_sub(1).unwrap_or(ends.len() - 1);
-                let kind = if ends[*segment].event.slides_behind() {
-                    SpecialKind::GrazingSliding
-                } else if ends[previous].event.slides_behind() {
-                    SpecialKind::AddingSliding
-                } else {
-                    SpecialKind::Grazing
-                };
+                let slides = before.evaluation.ends[*segment].event.slides_behind();
+                let kind = along.touch(before, *segment, slides);
                 Some((kind, Some(*segment)))
             }
         }

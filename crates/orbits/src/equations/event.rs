@@ -70,11 +70,7 @@ impl EventFormulas {
         let next = &system.modes[leg.next].slopes;
         let behind: Vec<Formula> =
             next.iter().map(|&slope| graph.substituted(slope, &after)).collect();
-        let rate_after = graph.slope(guard, &mut |graph, variable| match variable {
-            Variable::Time => graph.constant(1.0),
-            Variable::Component(place) => next[place as usize],
-            Variable::Parameter(_) => graph.constant(0.0),
-        });
+        let rate_after = rate(graph, guard, next);
         let columns = n + 1 + active.len();
         let mut formulas = vec![guard];
         formulas.extend(by_each(graph, guard, n, active));
@@ -128,12 +124,26 @@ impl Event {
         self.guard_by.rows(0, n).dot(&self.slopes) + self.guard_by[n]
     }
 
+    /// What the event makes of small differences: not finite at a graze.
+    pub fn saltation(&self) -> DMatrix<f64> {
+        let n = self.slopes.len();
+        let by = self.guard_by.rows(0, n).transpose();
+        let reset = self.after_by.columns(0, n);
+        let jump = &self.slopes_after - reset * &self.slopes - self.after_by.column(n);
+        // A clock acts at its time, and a rule that changes nothing leaves differences as they are.
+        let plain = by.amax() == 0.0 || jump.amax() == 0.0;
+        reset + if plain { DMatrix::zeros(n, n) } else { jump * by / self.rate() }
+    }
+
     /// Whether the formulas have the same values at another time.
     pub fn is_like(&self, later: &Self) -> bool {
         let own = [&self.after, &self.slopes, &self.slopes_after].map(DVector::as_slice);
         let others = [&later.after, &later.slopes, &later.slopes_after].map(DVector::as_slice);
-        let own = own.into_iter().chain([self.after_by.as_slice(), &self.conditions]);
-        let others = others.into_iter().chain([later.after_by.as_slice(), &later.conditions]);
+        // Derivatives by parameters grow with the time where its scale depends on them.
+        let by = |event: &Self| event.after_by.columns(0, event.slopes.len() + 1).into_owned();
+        let (by, other) = (by(self), by(later));
+        let own = own.into_iter().chain([by.as_slice(), &self.conditions]);
+        let others = others.into_iter().chain([other.as_slice(), &later.conditions]);
         own.zip(others).all(|(own, others)| {
             // A condition is zero at its event.
             let size = own.iter().fold(self.after.amax(), |size, it| size.max(it.abs()));
@@ -176,6 +186,15 @@ fn since_tick(graph: &mut Graph, period: Formula, phase: Formula, number: f64) -
     let ticks = graph.binary(Binary::Mul, number, period);
     let tick = graph.binary(Binary::Add, phase, ticks);
     graph.binary(Binary::Sub, time, tick)
+}
+
+/// The rate of a formula along slopes.
+pub(crate) fn rate(graph: &mut Graph, formula: Formula, slopes: &[Formula]) -> Formula {
+    graph.slope(formula, &mut |graph, variable| match variable {
+        Variable::Time => graph.constant(1.0),
+        Variable::Component(place) => slopes[place as usize],
+        Variable::Parameter(_) => graph.constant(0.0),
+    })
 }
 
 /// The derivatives of a formula by each component, the time and some parameters.

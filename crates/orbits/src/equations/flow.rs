@@ -2,7 +2,9 @@
 
 use nalgebra::DMatrix;
 use stickslip_expression::{Graph, Inputs, Program, System, Variable};
-use stickslip_solver::dynamic::{DynamicStart, DynamicSystem, run_dynamic};
+use stickslip_solver::dynamic::{
+    DynamicDense, DynamicObserver, DynamicStart, DynamicSystem, run_dynamic,
+};
 use stickslip_solver::{Dop853, Guard, Options, RunError};
 
 /// The equations of a mode together with their variational equations.
@@ -59,6 +61,33 @@ impl Flow {
         duration: f64,
         options: &Options,
     ) -> Result<Flown, RunError> {
+        self.watched(parameters, (s, state), duration, options, &mut ())
+    }
+
+    /// As [`Self::run`], with the largest sizes of components on the way, where they exceed those
+    /// that are given.
+    pub fn measure(
+        &self,
+        parameters: &[f64],
+        start: (f64, &[f64]),
+        duration: f64,
+        options: &Options,
+        sizes: &mut [f64],
+    ) -> Result<(), RunError> {
+        enlarge(sizes, start.1);
+        let end = self.watched(parameters, start, duration, options, &mut Largest(sizes))?;
+        enlarge(sizes, &end.state);
+        Ok(())
+    }
+
+    fn watched(
+        &self,
+        parameters: &[f64],
+        (s, state): (f64, &[f64]),
+        duration: f64,
+        options: &Options,
+        observer: &mut impl DynamicObserver<()>,
+    ) -> Result<Flown, RunError> {
         let Self { n, columns, .. } = *self;
         let mut all = vec![0.0; n * (columns + 1)];
         all[..n].copy_from_slice(state);
@@ -70,7 +99,7 @@ impl Flow {
             let (program, direction) = (self.program.with(parameters), duration.signum());
             let along = Along { program, origin: s, direction };
             let start = DynamicStart { mode: (), s: 0.0, state: &all };
-            let end = run_dynamic(Dop853, &along, start, length, options, &mut ())?;
+            let end = run_dynamic(Dop853, &along, start, length, options, observer)?;
             all = end.finished()?.state;
         }
         let by = DMatrix::from_column_slice(n, columns, &all[n..]);
@@ -101,6 +130,24 @@ impl DynamicSystem for Along {
         &[]
     }
     fn guard_values(&self, (): (), _: f64, _: &[f64], _: &mut [f64]) {}
+}
+
+/// Sizes of components that are no less than those of a state.
+pub(crate) fn enlarge(sizes: &mut [f64], state: &[f64]) {
+    for (size, value) in sizes.iter_mut().zip(state) {
+        *size = size.max(value.abs());
+    }
+}
+
+/// The largest sizes of components at steps.
+struct Largest<'a>(&'a mut [f64]);
+
+impl DynamicObserver<()> for Largest<'_> {
+    const WANTS_SEGMENTS: bool = true;
+
+    fn on_segment(&mut self, (): (), dense: &DynamicDense<'_>) {
+        enlarge(self.0, dense.coefficients());
+    }
 }
 
 /// A place as formulas have it. There are fewer than 2³².

@@ -97,7 +97,7 @@ fn a_bouncing_ball_folds_and_flips_and_doubles() {
     let flip = branch.specials.iter().find(|it| it.kind == SpecialKind::Flip).expect("a flip");
     let multipliers = flip.orbit.multipliers.as_ref().expect("no graze");
     assert!((multipliers[0][0] + 1.0).abs() < 1e-9 && (multipliers[1][0] + 0.49).abs() < 1e-9);
-    let doubled = orbits.doubled(&flip.orbit, 0, 0.05).expect("the doubled orbit");
+    let doubled = orbits.switched(flip, &orbit, 0, 0.05).expect("the doubled orbit");
     assert!((doubled.period - 2.0).abs() < 1e-12);
     let [one, other] = [1, 3].map(|i| doubled.segments[i].end[1]);
     assert!((one - other).abs() > 1e-3, "{one} {other}");

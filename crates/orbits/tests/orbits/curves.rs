@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stickslip_orbits::{BranchOptions, SpecialCurve, SpecialKind};
+use stickslip_orbits::{BranchOptions, Orbit, SpecialCurve, SpecialKind};
 
 use crate::impact::{self, Closed};
 
@@ -23,6 +23,11 @@ fn curve(
     orbits.curve(special, parameters, window, &options).expect("a curve")
 }
 
+/// The closed form at the amplitude and the frequency of an orbit.
+fn at(closed: &Closed, orbit: &Orbit) -> Closed {
+    Closed { a: orbit.parameters[3], w: orbit.parameters[4], ..*closed }
+}
+
 #[test]
 fn grazes_of_impacts_have_their_closed_form() {
     let closed = Closed { w: 0.8, ..Closed::EXAMPLE };
@@ -31,8 +36,8 @@ fn grazes_of_impacts_have_their_closed_form() {
     assert!(found.points.len() > 20 && found.objection.is_none(), "{:?}", found.objection);
     let mut worst = 0.0_f64;
     for orbit in &found.points {
-        let [a, w] = [orbit.parameters[3], orbit.parameters[4]];
-        worst = worst.max((a - Closed { w, ..closed }.impedance()).abs());
+        let own = at(&closed, orbit);
+        worst = worst.max((own.a - own.impedance()).abs());
     }
     println!("{} grazes, error {worst:e}", found.points.len());
     assert!(worst < 1e-11, "{worst}");
@@ -55,8 +60,7 @@ fn folds_and_flips_of_impacts_have_their_closed_form() {
     let flips = curve(&closed, SpecialKind::Flip, (3, [0.05, 1.2]), [4, 3], window);
     assert!(flips.points.len() > 5, "{:?}", flips.objection);
     for orbit in &flips.points {
-        let [a, w] = [orbit.parameters[3], orbit.parameters[4]];
-        let closed = Closed { a, w, ..closed };
+        let closed @ Closed { a, w, .. } = at(&closed, orbit);
         let v = orbit.segments.last().expect("segments").end[1];
         let test = 1.0 + closed.trace(v) + closed.determinant();
         assert!(test.abs() < 1e-8, "{a} {w} {v} {test}");
@@ -66,8 +70,7 @@ fn folds_and_flips_of_impacts_have_their_closed_form() {
     let folds = curve(&closed, SpecialKind::Fold, (3, [0.05, 1.2]), [4, 3], window);
     assert!(folds.points.len() > 5, "{:?}", folds.objection);
     for orbit in &folds.points {
-        let [a, w] = [orbit.parameters[3], orbit.parameters[4]];
-        let closed = Closed { a, w, ..closed };
+        let closed @ Closed { a, w, .. } = at(&closed, orbit);
         // At a fold both speeds are one: their difference is the root of a rounding error.
         let near = Closed { a: a * (1.0 + 1e-9), ..closed }.speeds();
         let far = Closed { a: a * (1.0 - 1e-9), ..closed }.speeds();

@@ -1,9 +1,12 @@
 //! Orbits against closed forms.
 
+mod attractors;
 mod ball;
 mod branches;
 mod buck;
 mod curves;
 mod impact;
+mod planted;
+mod published;
 mod refused;
 mod sliding;

@@ -142,3 +142,54 @@ fn branches_refuse_what_they_cannot_follow() {
         "{found:?}"
     );
 }
+
+/// Files of somebody who did not design this: each is an orbit, or an error that says where.
+#[test]
+fn strange_guesses_are_answered() {
+    let relay = "state x = 0\nmode up\n  x' = 1 - x\n  when x > 0.5 \"up\" -> down\nmode down\n  x' \
+                 = -1 - x\n  when x < -0.5 \"down\" -> up\nstart in up\nend = 9";
+    let system = System::parse(relay).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let (itinerary, far) = (["up", "down"], [1e300]);
+    let guess = Guess { itinerary: &itinerary, ..Guess::default() };
+    // Durations that lead nowhere, and a state from which the search has far to go.
+    let answered = |guess: &Guess<'_>| match orbits.find(&[], guess) {
+        Ok(orbit) => assert!((orbit.period - 2.0 * 3.0_f64.ln()).abs() < 1e-11, "{orbit:?}"),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    };
+    for durations in [[f64::NAN, 1.0], [0.0, 0.0], [1.0, f64::INFINITY], [-1.0, 1.0], [1e300, 1.0]]
+    {
+        answered(&Guess { durations: Some(&durations), ..guess });
+    }
+    answered(&Guess { state: Some(&far), ..guess });
+    // Three rounds are an orbit of three times the period; half a round is none.
+    let rounds = ["up", "down"].repeat(3);
+    let found = orbits.find(&[], &Guess { itinerary: &rounds, ..guess }).expect("an orbit");
+    assert!((found.period - 6.0 * 3.0_f64.ln()).abs() < 1e-11 && found.is_admissible());
+    let wrong = orbits.find(&[], &Guess { itinerary: &["down", "up"], ..guess });
+    assert!(wrong.is_err_and(|it| it.to_string().contains("mode up, which has up")));
+    for time in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let said = orbits.settled(&[], &Guess::default(), time).expect_err("refused");
+        assert!(said.to_string().contains("the time to settle"), "{said}");
+    }
+    // A condition that is zero throughout, one that ends runs, and a rule at given times.
+    let both = "state x = 0, y = 0\nx' = 1\ny' = 1\nwhen x > y \"never\"\n  x := 0\n  y := 0\n\
+                when x > 2 \"out\" -> end\nat 1 \"once\"\n  x := 0\nend = 9";
+    for (rule, expected) in [
+        ("never", "segment 0"),
+        ("out", "a rule that never ends a run"),
+        ("once", "a rule that acts again and again"),
+    ] {
+        let said = message(both, &[rule]);
+        assert!(said.contains(expected), "{rule}: {said}");
+    }
+    // A run that a rule ends, or that does nothing at all.
+    let ends = System::parse("state x = 0\nx' = 1\nwhen x > 2 \"out\" -> end").expect("a system");
+    let orbits = Orbits::new(&ends).expect("orbits");
+    let said = orbits.settled(&[], &Guess::default(), 9.0).expect_err("no orbit").to_string();
+    assert!(said.contains("a rule ends it"), "{said}");
+    let still = System::parse("state x = 1\nx' = 0*x\nend = 9").expect("a system");
+    let orbits = Orbits::new(&still).expect("orbits");
+    let said = orbits.settled(&[], &Guess::default(), 9.0).expect_err("no orbit").to_string();
+    assert!(said.contains("its last 0 events do not repeat"), "{said}");
+}

@@ -1,0 +1,151 @@
+//! Orbits from a run that settles: its last events repeat.
+
+use stickslip_expression::{InvalidValue, Runnable, Trigger};
+use stickslip_solver::dynamic::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, run_dynamic_with,
+};
+use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
+
+use crate::admissible::is_note;
+use crate::equations::{Draft, enlarge, is_apart};
+use crate::error::OrbitError;
+use crate::find::{Guess, Orbits};
+use crate::itinerary::Leg;
+use crate::orbit::Orbit;
+
+/// So many events of a run are looked at for one that repeats.
+const MOST_EVENTS: usize = 400;
+/// How much repeated states may differ, of their size.
+const REPEATS: f64 = 1e-4;
+
+/// A run with its last events, without those that change nothing if there are others.
+pub(crate) struct Settling {
+    pub run: DynamicRun<usize>,
+    pub last: Vec<DynamicSwitch<usize>>,
+    /// The largest sizes of components in the whole time, and in its second half.
+    pub sizes: [Vec<f64>; 2],
+}
+
+/// What is seen of a run.
+struct Watch {
+    events: Vec<DynamicSwitch<usize>>,
+    sizes: [Vec<f64>; 2],
+    /// The middle of the time.
+    middle: f64,
+}
+
+impl Watch {
+    fn see(&mut self, s: f64, state: &[f64]) {
+        let [whole, late] = &mut self.sizes;
+        enlarge(whole, state);
+        if s >= self.middle {
+            enlarge(late, state);
+        }
+    }
+}
+
+impl DynamicObserver<usize> for Watch {
+    const WANTS_SEGMENTS: bool = true;
+
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
+        self.events.push(event.to_switch());
+    }
+    fn on_segment(&mut self, _: usize, dense: &DynamicDense<'_>) {
+        self.see(dense.start(), dense.coefficients());
+    }
+    fn on_end(&mut self, _: usize, s: f64, state: &[f64]) {
+        self.see(s, state);
+    }
+}
+
+impl Orbits {
+    /// The orbit to which a run from the start of the guess has settled after a time: its last
+    /// events repeat. Its itinerary is not used.
+    ///
+    /// # Errors
+    /// [`OrbitError`].
+    pub fn settled(
+        &self,
+        parameters: &[f64],
+        guess: &Guess<'_>,
+        time: f64,
+    ) -> Result<Orbit, OrbitError> {
+        let runnable = self.start(parameters, guess)?;
+        require_time("the time to settle", time)?;
+        let found = self.settling(&runnable, time, &self.options);
+        let found = found.map_err(|error| OrbitError::Run { segment: 0, error })?;
+        let draft = self.repeated(parameters, &found);
+        self.solve(&draft.ok_or(OrbitError::NotSettled {
+            events: found.last.len(),
+            tolerance: REPEATS,
+            outcome: found.run.outcome,
+        })?)
+    }
+
+    /// A run from its start, for a time.
+    pub(crate) fn settling(
+        &self,
+        runnable: &Runnable,
+        time: f64,
+        options: &Options,
+    ) -> Result<Settling, RunError> {
+        let start = runnable.start();
+        let sizes = [0, 1].map(|_| vec![0.0; start.state.len()]);
+        let mut watch = Watch { events: Vec::new(), sizes, middle: start.s + 0.5 * time };
+        let (pair, end) = (EmbeddedPair::Dop853, start.s + time);
+        let run = run_dynamic_with(pair, runnable, start, end, options, &mut watch)?;
+        let Watch { events: mut last, sizes, .. } = watch;
+        let acts = |event: &DynamicSwitch<usize>| {
+            let rule = &self.system.modes[event.from].rules[event.guard];
+            !is_note(rule) || matches!(rule.trigger, Trigger::Every { .. })
+        };
+        // Where nothing else happens, rules that change nothing say where an orbit starts.
+        if last.iter().any(acts) {
+            last.retain(acts);
+        }
+        last.drain(..last.len().saturating_sub(MOST_EVENTS));
+        Ok(Settling { run, last, sizes })
+    }
+
+    /// The last round of events that repeats at the end of a run. Events that accumulate, or end
+    /// the run, do not.
+    pub(crate) fn repeated(&self, parameters: &[f64], found: &Settling) -> Option<Draft> {
+        let Settling { run, last, .. } = found;
+        if matches!(run.outcome, Outcome::Zeno { .. } | Outcome::EndedByGuard { .. }) {
+            return None;
+        }
+        let legs: Vec<Leg> = last.iter().map(leg).collect();
+        let apart: Vec<bool> = (0..self.system.components.len())
+            .map(|place| is_apart(&self.system, &legs, place))
+            .collect();
+        let same = |one: usize, other: usize| {
+            let near =
+                |(x, y): (&f64, &f64)| (x - y).abs() <= REPEATS * x.abs().max(y.abs()).max(REPEATS);
+            let mut states = last[one].after.iter().zip(&last[other].after).zip(&apart);
+            legs[one] == legs[other] && states.all(|(it, apart)| *apart || near(it))
+        };
+        let repeats = |m: &usize| {
+            let rounds = (last.len() - 1) / m;
+            rounds >= 2 && (last.len() - m..last.len()).all(|k| same(k, k - m))
+        };
+        let m = (1..last.len()).find(repeats)?;
+        let round = &last[last.len() - m - 1..];
+        Some(Draft {
+            parameters: parameters.to_vec(),
+            start: round[0].s,
+            legs: legs[last.len() - m..].to_vec(),
+            states: round[..m].iter().map(|it| it.after.clone()).collect(),
+            durations: round.windows(2).map(|pair| pair[1].s - pair[0].s).collect(),
+        })
+    }
+}
+
+/// The leg that ends with an event.
+pub(crate) fn leg(event: &DynamicSwitch<usize>) -> Leg {
+    Leg { mode: event.from, rule: event.guard, next: event.to }
+}
+
+/// Refuses a length of time that is none.
+pub(crate) fn require_time(name: &'static str, time: f64) -> Result<(), InvalidValue> {
+    InvalidValue::check(name, time, "a finite number above 0", time.is_finite() && time > 0.0)
+}

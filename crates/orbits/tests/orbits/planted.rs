@@ -1,0 +1,149 @@
+//! Special orbits of each kind, planted where a closed form puts them.
+
+use std::f64::consts::PI;
+
+use stickslip_expression::System;
+use stickslip_orbits::{Branch, BranchOptions, Guess, Orbits, SpecialKind};
+
+/// The branch over the first parameter of a system, from the orbit to which it settles.
+fn settled(text: &str, range: [f64; 2]) -> Branch {
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let orbit = orbits.settled(&system.values(), &Guess::default(), 200.0).expect("an orbit");
+    assert!(orbit.is_admissible(), "{:?}", orbit.verdict);
+    orbits.branch(&orbit, 0, range, &BranchOptions::default()).expect("a branch")
+}
+
+/// Requires one special orbit of a kind among those where the verdict changes.
+fn require(branch: &Branch, kind: SpecialKind, value: f64) {
+    let found: Vec<_> = branch.specials.iter().map(|it| (it.kind, it.value)).collect();
+    let own: Vec<_> = found.iter().filter(|it| it.0 == kind).collect();
+    assert_eq!(own.len(), 1, "{kind:?}: {found:?}");
+    assert!((own[0].1 - value).abs() < 1e-10, "{kind:?} at {value}: {found:?}");
+    assert!(!found.iter().any(|it| it.0 == SpecialKind::Boundary), "{found:?}");
+    assert_eq!(branch.objection, None);
+    // The verdict changes there, and nowhere else.
+    let side = |above: bool| {
+        let all = branch.points.iter().filter(move |it| (it.parameters[0] > value) == above);
+        all.map(|it| it.is_admissible()).collect::<Vec<_>>()
+    };
+    for side in [side(false), side(true)] {
+        assert!(!side.is_empty() && side.iter().all(|it| *it == side[0]), "{kind:?}: {side:?}");
+    }
+    assert_ne!(side(false)[0], side(true)[0]);
+}
+
+/// A relay with hysteresis 1/2, whose halves take log 3; `since` is the time since it switched.
+fn relay(rules: &str) -> String {
+    format!(
+        "parameter m = 1.3, h = 0.5\nstate x = 0, since = 0\nsince' = 1\nmode up\n  x' = 1 - x\n  \
+         {rules}\nmode down\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\n\
+         mode low\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\n\
+         start in up\nend = 9"
+    )
+}
+
+#[test]
+fn a_second_condition_at_an_event() {
+    let text = relay(
+        "when x > h \"up\" -> down\n    since := 0\n  when since > m \"late\" -> low\n    \
+         since := 0",
+    );
+    require(&settled(&text, [0.8, 1.5]), SpecialKind::CornerCollision, 3.0_f64.ln());
+}
+
+#[test]
+fn a_choice_at_an_event() {
+    let text = relay("when x > h \"up\" if since < m -> down else -> low\n    since := 0");
+    require(&settled(&text, [0.8, 1.5]), SpecialKind::Choice, 3.0_f64.ln());
+}
+
+#[test]
+fn a_segment_without_length() {
+    // Between the limits the relay waits for m² − 0.09.
+    let text = relay(
+        "when x > h \"up\" -> wait\n    since := 0\nmode wait\n  x' = 1 - x\n  when since > m^2 - \
+         0.09 \"waits\" -> down",
+    );
+    require(&settled(&text, [0.1, 1.5]), SpecialKind::VanishingSegment, 0.3);
+}
+
+/// x' = cos φ − m sign x crosses zero where sin φ = −πm/2, and slides from cos φ = m on.
+#[test]
+fn an_event_at_the_edge_of_sliding() {
+    let text = "parameter m = 0.3\nstate x = 0.1, phase = 0\nphase' = 1\nwhen phase > pi \
+                \"phase\"\n  phase := phase - 2*pi\nmode move\n  sliding on x = 0\n  x' = \
+                cos(phase) - m*sign(x)\nend = 9";
+    let edge = 1.0 / 1.0_f64.hypot(PI / 2.0);
+    require(&settled(text, [0.2, 0.6]), SpecialKind::SlidingEdge, edge);
+}
+
+/// A block sticks while a force m + 0.1 cos φ + 0.5 cos 2φ is less than 1. Its second maximum, at
+/// φ = π, is m + 0.4; the phase may start anew before it while the block sticks.
+#[test]
+fn sliding_that_ends_for_an_instant() {
+    for turn in ["1.5", "0.8"] {
+        let text = format!(
+            "parameter m = 0.55\nstate v = 0, phase = 0\nphase' = 1\nwhen phase > {turn}*pi \
+             \"phase\"\n  phase := phase - 2*pi\nmode move\n  sliding on v = 0\n  v' = m + \
+             0.1*cos(phase) + 0.5*cos(2*phase) - sign(v)\nend = 9"
+        );
+        require(&settled(&text, [0.5, 0.7]), SpecialKind::AddingSliding, 0.6);
+    }
+}
+
+/// Beside the relay, y' = m y − y³ gives up its symmetry at m = 0, or with −y² in place of −y³
+/// changes places with another orbit there.
+#[test]
+fn branches_that_meet() {
+    for (power, exact) in [(3, f64::sqrt as fn(f64) -> f64), (2, |m| m)] {
+        let text = relay("when x > h \"up\" -> down\n    since := 0")
+            .replace("since = 0\n", &format!("since = 0, y = 0\ny' = m*y - y^{power}\n"))
+            .replace("m = 1.3", "m = -0.4");
+        let system = System::parse(&text).expect("a system");
+        let orbits = Orbits::new(&system).expect("orbits");
+        let guess = Guess { itinerary: &["up", "down"], ..Guess::default() };
+        let orbit = orbits.find(&system.values(), &guess).expect("an orbit");
+        let options = BranchOptions::default();
+        let branch = orbits.branch(&orbit, 0, [-0.5, 0.5], &options).expect("a branch");
+        let found: Vec<_> = branch.specials.iter().map(|it| (it.kind, it.value)).collect();
+        assert!(matches!(found[..], [(SpecialKind::BranchPoint, _)]), "{found:?}");
+        assert!(found[0].1.abs() < 1e-10, "{found:?}");
+        let special = &branch.specials[0];
+        let beside = &branch.points[special.behind - 1];
+        let other = orbits.switched(special, beside, 0, 0.05).expect("another branch");
+        let [m, y] = [other.parameters[0], other.segments[0].state[2]];
+        assert!(y.abs() > 0.01 && (y.abs() - exact(m).abs()).abs() < 1e-10, "{m} {y}");
+        let all = orbits.branch(&other, 0, [-0.5, 0.5], &options).expect("a branch");
+        let far = all.points.iter().any(|it| it.segments[0].state[2].abs() > 0.45);
+        assert!(far && all.objection.is_none(), "{:?}", all.objection);
+    }
+}
+
+#[test]
+fn a_run_that_comes_to_rest_has_no_orbit() {
+    let ball = "state x = 1, v = 0\nx' = v\nv' = -1\nwhen x < 0 \"bounce\"\n  x := 0\n  \
+                v := -0.5*v\nend = 9";
+    let system = System::parse(ball).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let said = orbits.settled(&[], &Guess::default(), 9.0).expect_err("no orbit").to_string();
+    // √2 (1 + 2 (1/2 + 1/4 + …)).
+    assert!(said.contains("its events accumulate at t = 4.2426406"), "{said}");
+}
+
+/// The period of the clock changes along this branch. It folds at ω² = π(1 − r)/((1 + r)A).
+#[test]
+fn a_fold_over_the_period_of_a_clock() {
+    let system = System::parse(crate::ball::TEXT).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["period", "bounce"], ..Guess::default() };
+    let orbit = orbits.find(&system.values(), &guess).expect("an orbit");
+    let branch = orbits.branch(&orbit, 1, [4.0, 7.0], &BranchOptions::default()).expect("it");
+    let folds = branch.specials.iter().filter(|it| it.kind == SpecialKind::Fold);
+    let folds: Vec<f64> = folds.map(|it| it.value).collect();
+    let exact = (PI * 0.3 / (1.7 * 0.02)).sqrt();
+    assert!(folds.len() == 1 && (folds[0] - exact).abs() < 1e-10, "{folds:?} {exact}");
+    assert!(
+        branch.points.iter().all(|it| { (it.period - 2.0 * PI / it.parameters[1]).abs() < 1e-12 })
+    );
+}
