@@ -54,7 +54,7 @@ pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureErr
     let mut encoder = Encoder::new(&mut file, width, height, &palette.color_map_rgb())?;
     encoder.set_repeat(Repeat::Infinite)?;
     let mut indices = HashMap::new();
-    let mut shown = vec![UNCHANGED; last.pixels().len()];
+    let mut shown = vec![[0; 4]; last.pixels().len()];
     let drawn = others.iter().map(|picture| pixels(picture, 1.0)).map(|drawn| (drawn, PAUSES[0]));
     for (pixels, delay) in drawn.chain([(Ok(last), PAUSES[1])]) {
         let pixels = pixels?;
@@ -63,11 +63,12 @@ pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureErr
         }
         let (colours, _) = pixels.data().as_chunks::<4>();
         let changes = colours.iter().zip(&mut shown).map(|(colour, shown)| {
-            let index = *indices.entry(*colour).or_insert_with(|| {
-                // One of 255.
-                palette.index_of(colour).try_into().unwrap_or_default()
-            });
-            if mem::replace(shown, index) == index { UNCHANGED } else { index }
+            if mem::replace(shown, *colour) == *colour {
+                return UNCHANGED;
+            }
+            // One of 255.
+            let index = || palette.index_of(colour).try_into().unwrap_or_default();
+            *indices.entry(*colour).or_insert_with(index)
         });
         let buffer = changes.collect();
         let transparent = Some(UNCHANGED);
