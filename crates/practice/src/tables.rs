@@ -154,7 +154,7 @@ pub enum TableError {
         /// The place of the collision.
         place: TablePlace,
         /// What the engine reports.
-        source: CollisionError,
+        source: Box<CollisionError>,
     },
     /// The bound is not reached.
     #[error("the bound is not reached: the error is {error:e} at {place}")]
