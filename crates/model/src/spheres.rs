@@ -11,6 +11,7 @@ pub(crate) mod outcome;
 pub mod quantity;
 pub(crate) mod report;
 pub mod scaling;
+mod units;
 
 pub use bodies::{Body, Elasticity, Material, Reduction, Sphere, Surface, Wall};
 pub use encounter::{Encounter, Motion, WallMotion};

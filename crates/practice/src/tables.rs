@@ -38,6 +38,7 @@ mod chebyshev;
 mod document;
 mod header;
 mod hints;
+mod keys;
 mod settings;
 mod slab;
 mod stretch;
@@ -55,7 +56,7 @@ use stickslip_plane::progress::{Progress, Report, SILENT};
 pub use chebyshev::{ACROSS, ALONG};
 pub use document::{SCHEMA, TableDocument};
 pub use header::require_prefix;
-pub use hints::Keys;
+pub use keys::Keys;
 pub use settings::{TableSettings, TableWindow};
 pub use stretch::Stretch;
 pub use table::{Arrays, NO_REGION, Table, TableVerification};
@@ -153,7 +154,7 @@ pub enum TableError {
         /// The place of the collision.
         place: TablePlace,
         /// What the engine reports.
-        source: CollisionError,
+        source: Box<CollisionError>,
     },
     /// The bound is not reached.
     #[error("the bound is not reached: the error is {error:e} at {place}")]

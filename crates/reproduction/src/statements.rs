@@ -58,7 +58,7 @@ fn test(
 ) -> Result<Vec<Statement>, ReproductionError> {
     progress(Progress::Begin { steps: numbers.len() });
     let test = |&number: &u8| {
-        let statement = catalogue::test(number, subject);
+        let statement = tested(number, subject);
         progress(Progress::Advance { steps: 1 });
         statement
     };
@@ -68,7 +68,7 @@ fn test(
 }
 
 /// The number of statements.
-const COUNT: u8 = 25;
+pub const COUNT: u8 = 25;
 
 /// A statement in other words, its place in the paper, and its test.
 struct Entry(&'static str, &'static str, fn(&Subject) -> Result<StatementFinding, Stop>);
@@ -107,7 +107,7 @@ const ENTRIES: [Entry; COUNT as usize] = [
 ];
 
 /// Tests statement `number`, from 1 to [`COUNT`].
-fn test(number: u8, subject: &Subject) -> Result<Statement, ReproductionError> {
+fn tested(number: u8, subject: &Subject) -> Result<Statement, ReproductionError> {
     let entry = usize::from(number).checked_sub(1).and_then(|index| ENTRIES.get(index));
     let Entry(paraphrase, place, test) =
         entry.ok_or(ReproductionError::Statement { number, last: COUNT })?;

@@ -245,13 +245,13 @@ impl SystemPlane {
 /// Reads `name=value`.
 pub fn setting(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, such as mu=0.4")?;
-    let value = number::parse(value).map_err(|problem| problem.to_string())?;
+    let value = number::parse(value)?;
     Ok((name.trim().to_owned(), value))
 }
 
 /// Reads a time.
 pub fn time(text: &str) -> Result<f64, String> {
-    let value = number::parse(text).map_err(|problem| problem.to_string())?;
+    let value = number::parse(text)?;
     if value.is_finite() { Ok(value) } else { Err("expected a finite number".to_owned()) }
 }
 

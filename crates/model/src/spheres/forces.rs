@@ -4,7 +4,7 @@ use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::Surface;
 use super::quantity::{self, Quantity};
-use super::scaling::Units;
+use super::units::Units;
 use crate::engines::error::CollisionError;
 use crate::restitution;
 

@@ -3,11 +3,12 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
-use stickslip_contact::{Contact, Damping, InvalidValue, Law, Normal, Tangential};
+use stickslip_contact::{Contact, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::{Body, Material, Sphere, Surface};
 use super::forces::Forces;
 use super::quantity;
+use super::units::Units;
 
 const POSITIVE: &str = "a finite number above 0";
 
@@ -262,40 +263,6 @@ impl Reciprocals {
             turning: sphere.radius_m * sphere.radius_m / sphere.moment_of_inertia_kg_m2,
             normal_compliance: sphere.elasticity.normal_compliance(),
             tangential_compliance: sphere.elasticity.tangential_compliance(),
-        }
-    }
-}
-
-/// The units of an impact: of time in s, and of length in m.
-pub(super) struct Units {
-    law: Law,
-    /// The elastic constant over the effective mass.
-    beta: f64,
-    /// β^{−2/5} g_n^{−1/5} for Hertz' force, β^{−1/2} for a linear one.
-    pub time: f64,
-    /// g_n times that.
-    pub length: f64,
-}
-
-impl Units {
-    /// The units under a law with β, the elastic constant over the effective mass.
-    pub fn new(law: Law, beta: f64, normal_m_per_s: f64) -> Self {
-        let time = match law.normal {
-            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
-            Normal::Linear => 1.0 / beta.sqrt(),
-        };
-        Self { law, beta, time, length: normal_m_per_s * time }
-    }
-
-    /// The scaled damping a of a damping time in s, to which it is proportional.
-    pub fn damping(&self, damping_time_s: f64) -> f64 {
-        let &Self { law, beta, time, length } = self;
-        match (law.normal, law.damping) {
-            (_, Damping::None) => 0.0,
-            (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
-            (_, Damping::Linear) => beta * damping_time_s * time,
-            (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
-            (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
         }
     }
 }

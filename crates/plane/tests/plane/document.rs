@@ -1,17 +1,18 @@
 use stickslip_model::Reduction;
 use stickslip_plane::atlas::{
-    Atlas, AtlasDocument, AtlasDocumentError, BoundaryEnd, MismatchFields, RatioRange, SCHEMA,
+    AtlasDocument, AtlasDocumentError, BoundaryEnd, CollisionAtlas, MismatchFields, RatioRange,
+    SCHEMA,
 };
 use stickslip_plane::{Range, sealed};
 
 use crate::windows::{crossing, empty, frame, traced};
 
 /// The atlas as it comes back from its JSON.
-fn through_json(verified: &Atlas) -> Atlas {
+fn through_json(verified: &CollisionAtlas) -> CollisionAtlas {
     let json = serde_json::to_string(&AtlasDocument::new(verified)).unwrap();
     let document: AtlasDocument = serde_json::from_str(&json).unwrap();
     assert_eq!(document, AtlasDocument::new(verified));
-    Atlas::try_from(document).unwrap()
+    CollisionAtlas::try_from(document).unwrap()
 }
 
 #[test]
@@ -92,7 +93,7 @@ fn ends_of_boundaries_are_on_the_window_or_at_the_crossing() {
 fn refused(change: impl FnOnce(&mut AtlasDocument)) -> (AtlasDocumentError, String) {
     let mut document = AtlasDocument::new(crossing());
     change(&mut document);
-    let error = Atlas::try_from(document).unwrap_err();
+    let error = CollisionAtlas::try_from(document).unwrap_err();
     let text = error.to_string();
     (error, text)
 }
@@ -278,9 +279,9 @@ fn a_sealed_document_that_has_changed_is_noticed_wherever_it_has() {
     let mut more = value.clone();
     more["note"] = "checked by hand".into();
     let damaged = sealed::check(more.to_string().as_bytes()).unwrap_err();
-    assert_eq!(damaged.field, "note");
+    assert_eq!(damaged.name, "note");
     let mut less = value;
     less.as_object_mut().unwrap().remove("extrema");
     let damaged = sealed::check(less.to_string().as_bytes()).unwrap_err();
-    assert_eq!(damaged.field, "extrema");
+    assert_eq!(damaged.name, "extrema");
 }

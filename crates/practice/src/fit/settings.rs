@@ -3,7 +3,6 @@
 use stickslip_model::{Damping, InvalidValue, Law};
 use stickslip_plane::Range;
 
-use super::FitError;
 use super::bodies::FittedBodies;
 use super::data::{Datum, Measured};
 use super::free::{Free, Ranges};

@@ -260,7 +260,9 @@ pub fn restitution(
 ) -> Result<[f64; 2], TableError> {
     let contact = plane.contact_at(place)?;
     let computed = Engine::Exact.collide_into(contact, collision);
-    computed
-        .map_err(|source| TableError::Engine { place: TablePlace::of(plane, place), source })?;
+    computed.map_err(|source| TableError::Engine {
+        place: TablePlace::of(plane, place),
+        source: Box::new(source),
+    })?;
     Ok([collision.eps_t(), collision.eps_n])
 }

@@ -3,7 +3,7 @@
 use stickslip_plane::Range;
 
 use super::chebyshev::{double_value, value};
-use super::hints::Keys;
+use super::keys::Keys;
 use super::settings::TableWindow;
 use super::stretch::Stretch;
 

@@ -11,7 +11,8 @@ use std::time::Instant;
 use pyo3::prelude::*;
 use stickslip_plane::progress::InParallel;
 use stickslip_tracer::{
-    AtlasOf, AtlasOptions, Executor, FreeRunOf, LabelOf, Point, Progress, Serial, Surveyor, Watch,
+    AtlasOf, AtlasOptions, Executor, FreeRunOf, LabelOf, Point, Progress, Serial, Surveyor,
+    TraceError, Watch,
 };
 
 use crate::failure::failed;

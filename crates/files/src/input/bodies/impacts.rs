@@ -147,9 +147,7 @@ impl Reading for ImpactReading {
         for Column { index, name, slot } in &self.columns {
             let text = String::from_utf8_lossy(&fields[*index]);
             let value = match slot.quantity() {
-                Some(quantity) => {
-                    parameter::quantity(quantity, &text).map_err(|problem| problem.to_string())
-                }
+                Some(quantity) => parameter::quantity(quantity, &text),
                 None => number::parse(&text).map_err(|problem| {
                     let unit = slot.unit().unwrap_or_default();
                     format!("{problem}; expected a finite number, {unit}, {SYNTAX}")

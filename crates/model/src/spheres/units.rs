@@ -1,0 +1,37 @@
+//! The scaled units of an impact.
+
+use stickslip_contact::{Damping, Law, Normal};
+
+/// The units of an impact: of time in s, and of length in m.
+pub(super) struct Units {
+    law: Law,
+    /// The elastic constant over the effective mass.
+    beta: f64,
+    /// β^{−2/5} g_n^{−1/5} for Hertz' force, β^{−1/2} for a linear one.
+    pub time: f64,
+    /// g_n times that.
+    pub length: f64,
+}
+
+impl Units {
+    /// The units under a law with β, the elastic constant over the effective mass.
+    pub fn new(law: Law, beta: f64, normal_m_per_s: f64) -> Self {
+        let time = match law.normal {
+            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
+            Normal::Linear => 1.0 / beta.sqrt(),
+        };
+        Self { law, beta, time, length: normal_m_per_s * time }
+    }
+
+    /// The scaled damping a of a damping time in s, to which it is proportional.
+    pub fn damping(&self, damping_time_s: f64) -> f64 {
+        let &Self { law, beta, time, length } = self;
+        match (law.normal, law.damping) {
+            (_, Damping::None) => 0.0,
+            (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
+            (_, Damping::Linear) => beta * damping_time_s * time,
+            (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
+            (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
+        }
+    }
+}
