@@ -317,9 +317,9 @@ class FormulaSystem:
         ... every 1 from 1 "folds"
         ...   x := m*min(x, 1 - x)
         ... """)
-        >>> t, (x,) = tent.section("folds", time=3.5)
+        >>> t, (x,) = tent.section("folds", skip=0.5, time=3.0)
         >>> t.tolist(), x.tolist()
-        ([1.0, 2.0, 3.0], [0.25, 0.375, 0.5625])
+        ([1.0, 2.0, 3.0], [0.375, 0.5625, 0.65625])
         """
         return _attractors.section(self, rule, (skip, time), (start, mode, begin), parameters)
 

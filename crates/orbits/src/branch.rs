@@ -184,7 +184,9 @@ impl<S> Half<S> {
             let own = behind(special);
             *own = before + 1 - *own;
         }
-        self.specials.iter_mut().for_each(|special| *behind(special) += before);
+        for special in &mut self.specials {
+            *behind(special) += before;
+        }
         joined.points.push(start);
         joined.points.append(&mut self.points);
         joined.specials.append(&mut self.specials);

@@ -376,7 +376,8 @@ impl Equations {
 }
 
 /// The sizes of the unknowns of a draft: of components, the largest ones along the whole orbit. At
-/// its events a component may be zero.
+/// its events a component may be zero. What is below the absolute tolerance of runs is zero
+/// throughout.
 fn sizes(
     draft: &Draft,
     flows: &[Flow],
@@ -391,9 +392,11 @@ fn sizes(
             .measure(&draft.parameters, start, draft.durations[segment], options, &mut largest)
             .map_err(|error| OrbitError::Run { segment, error })?;
     }
-    let or_one = |size: f64| if size > 0.0 && size.is_finite() { size } else { 1.0 };
-    largest.iter_mut().for_each(|size| *size = or_one(*size));
-    let time = or_one(draft.period().abs());
+    let above = |least: f64, size: f64| if size > least && size.is_finite() { size } else { 1.0 };
+    for size in &mut largest {
+        *size = above(options.atol, *size);
+    }
+    let time = above(0.0, draft.period().abs());
     let states = (0..m).flat_map(|_| largest.iter().copied());
     let times = std::iter::repeat_n(time, m + 1);
     let sizes = states.chain(times).chain(active.iter().map(|(_, size)| *size));

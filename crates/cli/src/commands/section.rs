@@ -235,9 +235,9 @@ bifurcation diagram by brute force.";
 /// What `section --help` says last.
 const EXAMPLES: &str = "\
 Examples:
-  stickslip section examples/orbits/ball.slip --rule bounce --set a=0.05 --skip 100 --for 1000 \
+  stickslip section examples/orbits/oscillator.slip --rule impact --set w=0.8 --skip 400 --for 2000 \
 --plot section.svg
-  stickslip section examples/orbits/ball.slip --rule bounce --skip 200 --for 50 \
---over a=0.016:0.06 --plot diagram.svg --show v
+  stickslip section examples/orbits/oscillator.slip --rule phase --set w=0.8 --skip 400 --for 63 \
+--over a=0.3:1.5 --values 120 --plot diagram.svg --show v
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";
