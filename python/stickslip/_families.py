@@ -249,6 +249,12 @@ class HybridFamily:
                 del settings["guard_scale"]
                 self._settings = settings
                 self._end = end
+                front = range(self._recorded.front)
+                rows = [
+                    [*front, *(len(front) + place for place in row)]
+                    for row in places
+                    for _ in range(self._recorded.width)
+                ]
                 self._native = _native.HybridFamily.of_formulas(
                     self._recorded.system._native,
                     [0, 1],
@@ -256,7 +262,7 @@ class HybridFamily:
                     end,
                     settings,
                     (self.name, list(self.axes)),
-                    (names, places),
+                    (names, rows),
                 )
                 self.reason = None
             except CannotRecord as reason:

@@ -348,19 +348,16 @@ class FormulaSystem:
         found: dict[str, Any],
         dense: bool,
         rerun: Rerun,
-        event_names: list[str] | None = None,
-        variables: Named | None = None,
+        names: Names | None = None,
+        beside: Beside | None = None,
     ) -> Solution:
-        names = self._names
-        if event_names is not None:
-            names = replace(names, events=event_names)
         return Solution(
             found,
-            names,
+            names or self._names,
             start=found["start_time"],
             dense=dense,
             guards="decided",
-            beside=with_variables(found, variables),
+            beside=beside,
             again=(self, rerun),
         )
 

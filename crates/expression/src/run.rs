@@ -7,6 +7,7 @@ use stickslip_number::Number;
 use stickslip_solver::dynamic::{DynamicStart, ReadableDynamic};
 use stickslip_solver::{Guard, InvalidValue, Options, Schedule, Times};
 
+use crate::continuation::Continuation;
 use crate::program::Program;
 use crate::system::Next;
 
@@ -14,6 +15,7 @@ use crate::system::Next;
 #[derive(Clone, Debug)]
 pub struct Runnable {
     pub(crate) modes: Vec<Mode>,
+    pub(crate) slides: Vec<Continuation>,
     /// The times of each rule of each mode.
     pub(crate) ticks: Vec<Vec<Ticks>>,
     pub(crate) first: usize,
@@ -62,7 +64,7 @@ pub(crate) struct Resets {
 }
 
 impl Resets {
-    fn apply(&self, s: f64, y: &mut [f64]) {
+    pub(crate) fn apply(&self, s: f64, y: &mut [f64]) {
         let mut values: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.changed.len());
         self.values.run(s, y, &mut values);
         for (&component, value) in self.changed.iter().zip(values) {
@@ -114,7 +116,17 @@ impl Runnable {
             }
             self.state = state.to_vec();
         }
-        Ok(self)
+        Ok(self.on_sides())
+    }
+
+    /// The same system, starting on the sides of surfaces where its state is.
+    pub(crate) fn on_sides(mut self) -> Self {
+        // A part of a slide that was decided stays.
+        let slide = self.slides.iter().find(|slide| slide.first == self.first);
+        if let Some(slide) = slide {
+            self.first = slide.start(self.start, &self.state);
+        }
+        self
     }
 
     /// The same system with a relative and an absolute tolerance for each of its first components,
@@ -189,8 +201,12 @@ impl ReadableDynamic for Runnable {
         }
     }
     fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &[f64]) -> f64 {
+        let reaction = &self.modes[mode].reactions[guard];
+        if let Next::Slide { slide, guard } = reaction.next {
+            return self.slides[slide].condition(mode, guard, &reaction.resets, (s, y));
+        }
         let mut condition = [f64::NAN];
-        self.modes[mode].reactions[guard].condition.run(s, y, &mut condition);
+        reaction.condition.run(s, y, &mut condition);
         condition[0]
     }
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
@@ -201,6 +217,9 @@ impl ReadableDynamic for Runnable {
             Next::Branch(_, above, below) => {
                 let condition = ReadableDynamic::transition_condition(self, mode, guard, s, y);
                 if condition >= 0.0 { above } else { below }
+            }
+            Next::Slide { slide, guard } => {
+                return self.slides[slide].next(mode, guard, &reaction.resets, (s, y));
             }
         };
         reaction.resets.apply(s, y);

@@ -155,7 +155,6 @@ fn what_cannot_slide_is_refused() {
     for (text, expected) in [
         ("mode a\n  sliding on x = 2\n", "no equation of mode `a` changes"),
         ("mode a\n  sliding on x = 2\n  v' = -sign(x - 2)\n", "moves no differently"),
-        ("mode a\n  sliding on v = 0\n  sliding on x = 0\n", "slides along one surface"),
         ("mode a\n  sliding on 1 = 0\n", "made of numbers alone"),
         ("mode a\n  sliding v = 0\n", "expected"),
         ("mode a\n  sliding on v = 0\n  when x < 0 if v > 0 -> a else -> b\nmode b\n", "chooses"),
