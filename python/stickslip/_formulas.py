@@ -7,7 +7,6 @@ repository.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike
 from pathlib import Path
@@ -19,11 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native, _orbits
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
-from stickslip._names import Named
 from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
-from stickslip._solutions import Names, Solution, with_variables
+from stickslip._solutions import Beside, Names, Solution
 from stickslip._collisions import _threads
 from stickslip._studies import Study, _study
 

@@ -59,7 +59,7 @@ mod text;
 mod zeros;
 
 pub use compiled::Compiled;
-pub use family::{Accumulation, RuleOrder, SystemFamily};
+pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep, outcome_name};

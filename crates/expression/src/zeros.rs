@@ -95,8 +95,12 @@ impl System {
                     Trigger::When(guard, _) => Some(graph.substituted(guard, &before)),
                     _ => None,
                 };
+                let time = match &rule.trigger {
+                    Trigger::At(times) if times.len() == 1 => Some(times[0]),
+                    _ => None,
+                };
                 for mode in rule.next.modes(place).filter(|_| !rule.stays_as_it_is()) {
-                    entries.push(Entry { mode, state: state.clone(), time: None, zero });
+                    entries.push(Entry { mode, state: state.clone(), time, zero });
                 }
                 if let Some(rest) = &rule.rest {
                     let state = behind(graph, &state, &rest.changes);

@@ -3,7 +3,7 @@
 use super::reader::{RESERVED, Reader};
 use super::tokens::Token;
 use super::{TextError, names};
-use crate::graph::{Binary, Formula, Unary, Variable};
+use crate::graph::{Binary, Formula, Node, Unary, Variable};
 
 /// How deep parentheses, signs and branches may be nested.
 const DEEPEST: usize = 200;
@@ -155,6 +155,7 @@ impl Reader<'_> {
 
     /// Where both conditions hold, or one of them.
     fn joint(&mut self, one: Truth, other: Truth, function: Binary) -> Truth {
+        let [one, other] = [one, other].map(|truth| self.off_limit(truth));
         if let (Truth::NotNegative(a), Truth::NotNegative(b)) = (one, other) {
             let opposite = if function == Binary::Max { Binary::Min } else { Binary::Max };
             return Truth::NotNegative(self.system.graph.binary(opposite, a, b));
@@ -175,9 +176,43 @@ impl Reader<'_> {
         }
     }
 
+    /// The same condition on a number that is never 0, if only rules change it, or if it stands still
+    /// in the mode of the rule that is read: it may stay on the limit, where a guard decides nothing.
+    fn off_limit(&mut self, truth: Truth) -> Truth {
+        let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
+        let is_off = |it: Formula| matches!(self.system.graph.node(it), Node::Select(a, _, b) if a == b);
+        match self.system.graph.node(formula) {
+            Node::Unary(Unary::Neg, inner) if is_off(inner) => return truth,
+            _ if is_off(formula) => return truth,
+            _ => {}
+        }
+        let reads = self.system.graph.reads(&[formula]);
+        let components = || reads.iter().filter(|it| matches!(it, Variable::Component(_)));
+        let stays = |it: &Variable| match *it {
+            Variable::Time => false,
+            Variable::Component(place) => {
+                let slope = self.slopes[place as usize].filter(|_| self.in_rule);
+                let still = slope.and_then(|slope| self.system.graph.value(slope)) == Some(0.0);
+                self.system.components[place as usize].discrete || still
+            }
+            Variable::Parameter(_) => true,
+        };
+        if !reads.iter().all(stays) || components().next().is_none() {
+            return truth;
+        }
+        let graph = &mut self.system.graph;
+        let (one, negative) = (graph.constant(1.0), graph.unary(Unary::Neg, formula));
+        let not_below = graph.select(negative, one, formula);
+        let formula = graph.select(formula, not_below, formula);
+        match truth {
+            Truth::Negative(_) => Truth::Negative(formula),
+            Truth::NotNegative(_) => Truth::NotNegative(formula),
+        }
+    }
+
     /// A number that becomes negative where the condition begins to hold.
     pub(super) fn guard_of(&mut self, truth: Truth) -> Formula {
-        match truth {
+        match self.off_limit(truth) {
             Truth::Negative(formula) => formula,
             Truth::NotNegative(formula) => self.system.graph.unary(Unary::Neg, formula),
         }

@@ -49,6 +49,7 @@ impl System {
             system: Self::default(),
             formulas: HashMap::new(),
             slopes: Vec::new(),
+            in_rule: false,
             surfaces: Vec::new(),
             by_mode: HashMap::new(),
             components: HashMap::new(),
@@ -356,6 +357,7 @@ impl<'a> Reader<'a> {
             }
         }
         let mut read = Vec::new();
+        self.in_rule = true;
         for statement in rules {
             self.next = statement.start;
             if let Token::Name("when" | "at" | "every") = self.peek() {
@@ -369,6 +371,7 @@ impl<'a> Reader<'a> {
                 self.change(rule)?;
             }
         }
+        self.in_rule = false;
         read.iter_mut().for_each(Rule::note_once);
         if self.system.modes.is_empty() {
             // Mistakes in formulas that no mode uses.
