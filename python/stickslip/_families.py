@@ -138,7 +138,8 @@ class HybridFamily:
 
     t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if
     they depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that
-    returns the state, the mode, or (mode, state).
+    returns the state, the mode, or (mode, state). If it is recorded and chooses between two modes,
+    the choice is an event "start", whose condition is a boundary.
 
     name, axes: what was traced and the names of the two parameters, for files and pictures. rtol,
     atol, max_step, first_step, guard_scale: as in `solve`; margins are as accurate as the runs. The
@@ -261,15 +262,20 @@ class HybridFamily:
                     for row in places
                     for _ in range(self._recorded.width)
                 ]
-                self._native = _native.HybridFamily.of_formulas(
-                    self._recorded.system._native,
-                    [0, 1],
-                    [0.0, 0.0],
-                    end,
-                    settings,
-                    (self.name, list(self.axes)),
-                    (names, rows),
-                )
+                try:
+                    self._native = _native.HybridFamily.of_formulas(
+                        self._recorded.system._native,
+                        [0, 1],
+                        [0.0, 0.0],
+                        end,
+                        settings,
+                        (self.name, list(self.axes)),
+                        (names, rows),
+                    )
+                except ValueError as reason:
+                    raise CannotRecord(str(reason)) from None
+                # A start that chooses the mode is an event.
+                self.guards = tuple(self._native.guards())
                 self.reason = None
             except CannotRecord as reason:
                 self._fall_back(str(reason))
@@ -278,6 +284,7 @@ class HybridFamily:
         if self._must_record:
             raise ValueError(f"record = True, but {reason}")
         self.reason, self._recorded, self._native = reason, None, self._callables
+        self.guards = tuple(self._native.guards())
 
     def _compare(self, x: ArrayLike, y: ArrayLike) -> None:
         """Compares formulas with their functions at up to three points, before they are used."""

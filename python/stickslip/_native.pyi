@@ -76,7 +76,7 @@ class Tape:
     def system(
         self,
         parameters: list[str],
-        start: tuple[int, float, list[int]],
+        start: tuple[int, float, list[int], tuple[int, int] | None],
         modes: list[tuple[str, list[int], list[dict[str, Any]]]],
         held: list[str],
         surfaces: list[tuple[str, int]],

@@ -28,7 +28,8 @@ class Recorded:
     """The formulas of a system, and the functions from which they come.
 
     names: those of parameters that functions get before further arguments. values: their values, if
-    these are known. beginning: a function of the start that returns the state there.
+    these are known. beginning: a function of the start that returns the state there, the mode, or
+    (mode, state).
 
     Raises CannotRecord with the reason, if a function is no formula.
     """
@@ -75,15 +76,18 @@ class Recorded:
         self.rests: list[dict[int, tuple[str, Callable[..., Any], int, list[int] | None]]] = []
         self.sets: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         modes = [self.mode(mode) for mode in table.system_modes]
+        self.first = begin[0]
+        #: What chooses the first mode, and that where it is below 0.
+        self.otherwise: tuple[int, int] | None = None
         if beginning is None:
             first = [native.constant(value) for value in state.tolist()]
         else:
             now = (table.variables.named(held),) if held else ()
             at, args = (self.start, state.tolist()), (*now, *self.behind)
-            first = self.formulas("start", beginning, state.size, at, args)
+            first = self.begun(beginning, args, at)
         first += [native.constant(value) for value in held]
-        self.first, self.from_start = begin[0], first
-        given = (begin[0], self.start, first)
+        self.from_start = first
+        given = (self.first, self.start, first, self.otherwise)
         labels, surfaces = table.variables.labels, list(self.surfaces.items())
         try:
             made = native.system(list(names), given, modes, labels, surfaces)
@@ -145,6 +149,25 @@ class Recorded:
             for guard, value in zip(source.guards, values, strict=True):
                 rules.append(self.rule(guard, value, (mode, slopes, source), len(rules)))
         return mode.name, slopes, rules
+
+    def begun(
+        self, beginning: Function, args: tuple[Any, ...], at: tuple[float, list[float]]
+    ) -> list[int]:
+        """The formulas of the state at the start, and the first mode."""
+        names, n = self.table.names, self.state.size
+
+        def record(plain: Callable[..., Any]) -> Any:
+            return self.tape.choice(plain, n, args, names, at)
+
+        choice, found = self.recorded("start", beginning, record)
+        state = [symbol.id for symbol in found or map(self.tape.number, at[1])]
+        if len(state) != n:
+            raise CannotRecord(f"start: it returns {len(state)} numbers instead of {n}")
+        if isinstance(choice, tuple):
+            self.first, self.otherwise = choice[1], (choice[0].id, choice[2])
+        elif choice is not None:
+            self.first = choice
+        return state
 
     def sided(self, about: str, function: Function) -> list[int]:
         """The formulas of a right-hand side, which choose between those beside surfaces."""
@@ -385,9 +408,19 @@ class Recorded:
         at = (self.start, np.append(self.state, self.table.variables.flat))
         native = self.tape.native
         found = native.evaluate(self.from_start, self.start, at[1].tolist(), list(values))
+        first = self.first
+        if self.otherwise is not None:
+            (choice,) = native.evaluate([self.otherwise[0]], self.start, [], list(values))
+            first = self.otherwise[1] if choice < 0.0 else first
         if self.beginning is not None:
-            self.same("start", self.beginning, at, values, found)
-        self.compare_at(self.first, self.start, np.array(found), values)
+            transition = self.table.transition(self.beginning, "start")
+            to, state = self.call(transition, at, values)
+            if to is not None and to != first:
+                raise CannotRecord("start: it depends on more than t and y")
+            if state is not None:
+                given = partial(lambda state, *_: state, state)
+                self.same("start", given, at, values, found[: self.state.size])
+        self.compare_at(first, self.start, np.array(found), values)
 
     def compare_at(
         self, mode: int, t: float, y: NDArray[np.float64], values: tuple[float, ...]

@@ -154,18 +154,20 @@ impl Tape {
     }
 
     /// A system of formulas of this tape: names of parameters; the first mode, the time and the
-    /// state at the start; and modes with slopes and rules. Only rules change the `held` last
+    /// state at the start, and what chooses another first mode where it is negative; and modes with slopes and rules. Only rules change the `held` last
     /// components, which have these names. All modes slide along surfaces with names.
     fn system(
         &self,
         parameters: Vec<String>,
-        start: (usize, f64, Vec<u32>),
+        start: (usize, f64, Vec<u32>, Option<(u32, usize)>),
         modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
         held: Vec<String>,
         surfaces: Vec<(String, u32)>,
     ) -> PyResult<FormulaSystem> {
         let mut graph = self.graph().clone();
-        let (first, time, start) = start;
+        let (first, time, start, otherwise) = start;
+        let otherwise = otherwise.map(|(formula, mode)| Ok((known(&graph, formula)?, mode)));
+        let otherwise = otherwise.into_iter().collect::<PyResult<_>>()?;
         let start = all_known(&graph, &start)?;
         let n = start.len().saturating_sub(held.len());
         let component = |(place, &start): (usize, &Formula)| match place.checked_sub(n) {
@@ -195,6 +197,7 @@ impl Tape {
             components,
             modes: read,
             first,
+            otherwise,
             start: begin,
             end,
             ..System::default()

@@ -180,8 +180,14 @@ impl Reader<'_> {
     /// in the mode of the rule that is read: it may stay on the limit, where a guard decides nothing.
     fn off_limit(&mut self, truth: Truth) -> Truth {
         let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
-        let is_off = |it: Formula| matches!(self.system.graph.node(it), Node::Select(a, _, b) if a == b);
-        match self.system.graph.node(formula) {
+        let graph = &self.system.graph;
+        let is_off = |it: Formula| match graph.node(it) {
+            Node::Select(_, inner, below) => {
+                matches!(graph.node(inner), Node::Select(_, above, _) if above == below)
+            }
+            _ => false,
+        };
+        match graph.node(formula) {
             Node::Unary(Unary::Neg, inner) if is_off(inner) => return truth,
             _ if is_off(formula) => return truth,
             _ => {}
@@ -201,9 +207,19 @@ impl Reader<'_> {
             return truth;
         }
         let graph = &mut self.system.graph;
-        let (one, negative) = (graph.constant(1.0), graph.unary(Unary::Neg, formula));
-        let not_below = graph.select(negative, one, formula);
-        let formula = graph.select(formula, not_below, formula);
+        // What rounding makes of a difference is 0.
+        let parts = match graph.node(formula) {
+            Node::Binary(Binary::Sub, a, b) => [a, b],
+            _ => [formula, formula],
+        };
+        let [a, b] = parts.map(|part| graph.unary(Unary::Abs, part));
+        let [one, slight, least] = [1.0, 1e-14, 1e-290].map(|x| graph.constant(x));
+        let size = graph.binary(Binary::Add, a, b);
+        let size = graph.binary(Binary::Mul, size, slight);
+        let room = graph.binary(Binary::Add, size, least);
+        let [more, less] = [Binary::Add, Binary::Sub].map(|it| graph.binary(it, formula, room));
+        let not_below = graph.select(less, formula, one);
+        let formula = graph.select(more, not_below, formula);
         match truth {
             Truth::Negative(_) => Truth::Negative(formula),
             Truth::NotNegative(_) => Truth::NotNegative(formula),

@@ -83,7 +83,7 @@ fn a_run_starts_on_either_side_of_a_surface() {
     // A start by a condition goes to the right side, too.
     let text = BELT.replace("mode move", "mode rest\n  v' = 0\nmode move");
     let text = format!("{text}\nstart if belt > 0.4 in move else rest");
-    let system = System::parse(&text.replace("v = belt", "v = belt - 0.1")).expect("a system");
+    let system = System::parse(&text.replace(", v = belt", ", v = belt - 0.1")).expect("a system");
     for (speed, first) in [(0.5, "move_below"), (0.3, "rest")] {
         assert_eq!(modes(&system, &run(&system, &[speed, 0.8]))[0], first);
     }
