@@ -39,11 +39,13 @@ class FormulaSystem:
 
     def __init__(self, text: str) -> None:
         self._native = _native.FormulaSystem(text)
+        #: The surfaces of functions of Python.
+        self._surfaces: tuple[str, ...] = ()
 
     @classmethod
-    def _of(cls, native: _native.FormulaSystem) -> FormulaSystem:
+    def _of(cls, native: _native.FormulaSystem, surfaces: Sequence[str] = ()) -> FormulaSystem:
         system = cls.__new__(cls)
-        system._native = native
+        system._native, system._surfaces = native, tuple(surfaces)
         return system
 
     @property
@@ -372,12 +374,15 @@ class FormulaSystem:
         return f"FormulaSystem({', '.join(self.components)}; modes {self.modes}; {values})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self.text, list(self.parameters), self.components, self.modes)
+        names = (list(self.parameters), self.components, self.modes)
+        return _restored, (self.text, list(self._surfaces), *names)
 
 
-def _restored(text: str, *names: list[str]) -> FormulaSystem:
+def _restored(text: str, surfaces: list[str], *names: list[str]) -> FormulaSystem:
     """The system of a text, under the names that it had before."""
-    return FormulaSystem._of(_native.FormulaSystem(text).renamed(*names))
+    read = _native.FormulaSystem
+    native = read.sliding(text, surfaces) if surfaces else read(text)
+    return FormulaSystem._of(native.renamed(*names), surfaces)
 
 
 def system(text: str) -> FormulaSystem:

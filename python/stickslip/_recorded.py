@@ -93,7 +93,7 @@ class Recorded:
             made = native.system(list(names), given, modes, labels, surfaces)
         except ValueError as reason:
             raise CannotRecord(str(reason)) from None
-        self.system = FormulaSystem._of(made)
+        self.system = FormulaSystem._of(made, list(self.surfaces))
 
     def formulas(
         self,

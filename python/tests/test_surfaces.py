@@ -1,6 +1,7 @@
 """Systems with surfaces, variables and accumulating events, as formulas, against closed forms."""
 
 import math
+import pickle
 import warnings
 
 import numpy as np
@@ -40,6 +41,8 @@ def test_two_surfaces_are_decided() -> None:
     assert called.events.dtype == found.events.dtype
     for name in ("guard", "from", "to", "sides_from", "sides_to", "unique"):
         assert (called.events[name] == found.events[name]).all()
+    again = pickle.loads(pickle.dumps(found))
+    assert again.sides["y"].tolist() == found.sides["y"].tolist()
     # Where it could go on in several ways, functions say so as before.
     away = HybridSystem(sliding={"x": lambda t, y: y[0]})
     away.mode("main", lambda t, y, sign: [sign.x])

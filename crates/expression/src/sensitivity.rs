@@ -115,7 +115,7 @@ impl System {
         }
         if !self.slides.is_empty() {
             let s = compiled.with(parameters)?.start().s;
-            let reason = "modes that slide along several surfaces are no formulas";
+            let reason = "what follows on several surfaces, or on those of functions, is no formula";
             return Err(SensitivityError::Jump { s, reason });
         }
         let end_moves = end.is_none();

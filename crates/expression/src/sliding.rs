@@ -57,7 +57,7 @@ pub enum NotSliding {
     #[error("a rule of mode `{0}` chooses by `if`; expected modes that do not slide behind it")]
     Branch(String),
     /// There are more surfaces than can be decided.
-    #[error("mode `{0}` slides along too many surfaces; expected 4 at most")]
+    #[error("mode `{0}` slides along too many surfaces; expected 4 at most, or fewer in many modes")]
     TooMany(String),
     /// Events accumulate, and the mode that follows slides.
     #[error("a rule of mode `{0}` comes to rest in a mode that slides; expected another mode")]
@@ -66,6 +66,9 @@ pub enum NotSliding {
 
 /// The largest number of surfaces of a mode.
 const MOST: usize = 4;
+
+/// Several surfaces make many modes, of which so many are enough.
+const MOST_MODES: usize = 20_000;
 
 /// The formulas of one side of a surface.
 struct Side {
@@ -118,6 +121,7 @@ impl System {
     ) -> Result<Self, NotSliding> {
         let mut unslid = self.clone();
         unslid.surfaces = surfaces.to_vec();
+        self.surfaces.clear();
         let old = std::mem::take(&mut self.modes);
         // Where each mode, or the first of its parts, is found.
         let (mut places, mut kinds) = (Vec::new(), Vec::new());
@@ -127,7 +131,7 @@ impl System {
             let (kind, parts) = match surfaces.get(place).map_or(&[][..], |it| it) {
                 [] => (Kind::Plain, 1),
                 &[surface] if names.is_none() => (Kind::One(surface), PARTS.len()),
-                several if several.len() > MOST => {
+                several if several.len() > MOST || count > MOST_MODES => {
                     return Err(NotSliding::TooMany(old[place].name.clone()));
                 }
                 several => {
@@ -163,10 +167,7 @@ impl System {
         if let Some(&Kind::One(surface)) = targets.kinds.get(self.first) {
             otherwise.push((self.at_start(surface), targets.places[self.first] + BELOW));
         }
-        // What is written says more than a list of choices, or modes without formulas between them.
-        if otherwise.len() > 1 || slides > 0 {
-            self.unslid = Some(Box::new(unslid));
-        }
+        self.unslid = Some(Box::new(unslid));
         self.otherwise = otherwise;
         self.first = targets.places.get(self.first).copied().unwrap_or(0);
         Ok(self)

@@ -27,7 +27,7 @@ pub struct System {
     pub end: Option<Formula>,
     /// Modes that slide along several surfaces.
     pub slides: Vec<Slide>,
-    /// The system before its modes were replaced by those that slide, if these have no text.
+    /// The system before its modes were replaced by those that slide.
     pub unslid: Option<Box<System>>,
     /// Along what the modes of such a system slide.
     pub surfaces: Vec<Vec<Formula>>,

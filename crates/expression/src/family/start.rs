@@ -5,11 +5,14 @@ use crate::system::{Mode, Next, Rule, System, Trigger};
 
 /// The system with a mode in front of the first ones, whose rule `start` leads to one of them by
 /// the condition: so the condition has a margin, as that of every transition. `None` if there are
-/// several conditions, or rules at given times, which would not count at the start.
+/// several conditions, rules at given times, which would not count at the start, or sides of several
+/// surfaces to be decided there.
 pub(super) fn chosen(system: &System, mut order: RuleOrder) -> Option<(System, RuleOrder)> {
     let &[(condition, other)] = &system.otherwise[..] else { return None };
     let is_clock = |rule: &Rule| !matches!(rule.trigger, Trigger::When(..));
-    if system.modes.iter().flat_map(|mode| &mode.rules).any(is_clock) {
+    let is_decided = |mode: usize| system.slides.iter().any(|slide| slide.first == mode);
+    let has_clocks = system.modes.iter().flat_map(|mode| &mode.rules).any(is_clock);
+    if has_clocks || is_decided(system.first) || is_decided(other) {
         return None;
     }
     let mut chosen = system.clone();

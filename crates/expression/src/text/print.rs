@@ -52,8 +52,9 @@ impl System {
     #[must_use]
     pub fn text(&self) -> String {
         match &self.unslid {
-            Some(unslid) => unslid.text(),
-            None => Printer::new(&self.readable()).print(),
+            // Modes without formulas between them, or a list of choices at the start, have no text.
+            Some(unslid) if !self.slides.is_empty() || self.otherwise.len() > 1 => unslid.text(),
+            _ => Printer::new(&self.readable()).print(),
         }
     }
 }
