@@ -8,8 +8,8 @@ use std::borrow::Cow;
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, InvalidValue, Options, RunError};
 use stickslip_tracer::{
-    Accumulation, DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun,
-    Itinerary, Point, Window,
+    Accumulation, DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError,
+    FreeRun, Itinerary, Point, Window,
 };
 
 pub use align::RuleOrder;

@@ -115,7 +115,8 @@ impl System {
         }
         if !self.slides.is_empty() {
             let s = compiled.with(parameters)?.start().s;
-            let reason = "what follows on several surfaces, or on those of functions, is no formula";
+            let reason =
+                "what follows on several surfaces, or on those of functions, is no formula";
             return Err(SensitivityError::Jump { s, reason });
         }
         let end_moves = end.is_none();

@@ -57,7 +57,9 @@ pub enum NotSliding {
     #[error("a rule of mode `{0}` chooses by `if`; expected modes that do not slide behind it")]
     Branch(String),
     /// There are more surfaces than can be decided.
-    #[error("mode `{0}` slides along too many surfaces; expected 4 at most, or fewer in many modes")]
+    #[error(
+        "mode `{0}` slides along too many surfaces; expected 4 at most, or fewer in many modes"
+    )]
     TooMany(String),
     /// Events accumulate, and the mode that follows slides.
     #[error("a rule of mode `{0}` comes to rest in a mode that slides; expected another mode")]

@@ -112,12 +112,7 @@ impl System {
     }
 
     /// What is known of the components in each mode.
-    fn held(
-        &self,
-        graph: &mut Graph,
-        first: &[usize],
-        starts: &[Formula],
-    ) -> Vec<Vec<Held>> {
+    fn held(&self, graph: &mut Graph, first: &[usize], starts: &[Formula]) -> Vec<Vec<Held>> {
         let mut held = vec![vec![Held::Nowhere; self.components.len()]; self.modes.len()];
         // The modes of slides are entered in any state.
         let mut open = self.slide_modes();

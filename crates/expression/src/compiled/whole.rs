@@ -17,7 +17,11 @@ pub(super) fn require(system: &System) -> Result<(), InvalidValue> {
         require_below(modes, last(k), "the last mode of a slide")?;
         let corners = slide.corners.len();
         if corners != 1 << k || slide.corners.iter().any(|slopes| slopes.len() != n) {
-            return broken("the number of fields of a slide", corners, "one for each choice of sides");
+            return broken(
+                "the number of fields of a slide",
+                corners,
+                "one for each choice of sides",
+            );
         }
     }
     for mode in &system.modes {

@@ -92,7 +92,9 @@ impl System {
                 .collect();
             let mut own = self.redirected(targets, place, mode, &own)?;
             // A rule that stays is no longer where a surface was left.
-            let settled = chosen.iter().map(|&part| if part > SLIDING { part - ABOVE_RELEASED } else { part });
+            let settled = chosen
+                .iter()
+                .map(|&part| if part > SLIDING { part - ABOVE_RELEASED } else { part });
             let settled = first + place_of(settled);
             let stays = own.iter_mut().filter(|rule| rule.next == Next::Stay);
             if settled != first + choice {
@@ -132,7 +134,9 @@ impl Beside<'_> {
         let base = &self.rates[below];
         let matrix: Vec<Vec<Formula>> = sliding
             .iter()
-            .map(|&i| sliding.iter().map(|&j| less(graph, self.rates[above(j)][i], base[i])).collect())
+            .map(|&i| {
+                sliding.iter().map(|&j| less(graph, self.rates[above(j)][i], base[i])).collect()
+            })
             .collect();
         let right: Vec<Formula> =
             sliding.iter().map(|&i| graph.unary(Unary::Neg, base[i])).collect();
@@ -258,7 +262,12 @@ fn attraction(graph: &mut Graph, matrix: &[Vec<Formula>]) -> Option<Formula> {
 }
 
 /// The determinant of these rows and columns, as many of each. Exact zeros are left out.
-fn determinant(graph: &mut Graph, a: &[Vec<Formula>], rows: &[usize], columns: &[usize]) -> Formula {
+fn determinant(
+    graph: &mut Graph,
+    a: &[Vec<Formula>],
+    rows: &[usize],
+    columns: &[usize],
+) -> Formula {
     let Some((&row, rows)) = rows.split_first() else { return graph.constant(1.0) };
     let mut sum: Option<Formula> = None;
     for (place, &column) in columns.iter().enumerate() {

@@ -182,7 +182,7 @@ impl Reader<'_> {
         let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
         let graph = &self.system.graph;
         let is_off = |it: Formula| match graph.node(it) {
-            Node::Select(_, inner, below) => {
+            Node::Select(_, below, inner) => {
                 matches!(graph.node(inner), Node::Select(_, above, _) if above == below)
             }
             _ => false,
@@ -217,9 +217,10 @@ impl Reader<'_> {
         let size = graph.binary(Binary::Add, a, b);
         let size = graph.binary(Binary::Mul, size, slight);
         let room = graph.binary(Binary::Add, size, least);
-        let [more, less] = [Binary::Add, Binary::Sub].map(|it| graph.binary(it, formula, room));
-        let not_below = graph.select(less, formula, one);
-        let formula = graph.select(more, not_below, formula);
+        let negative = graph.unary(Unary::Neg, formula);
+        let [above, below] = [formula, negative].map(|it| graph.binary(Binary::Sub, it, room));
+        let not_below = graph.select(above, formula, one);
+        let formula = graph.select(below, formula, not_below);
         match truth {
             Truth::Negative(_) => Truth::Negative(formula),
             Truth::NotNegative(_) => Truth::NotNegative(formula),

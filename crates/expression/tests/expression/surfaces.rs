@@ -125,10 +125,12 @@ fn random_fields_slide_along_two_surfaces_as_the_solvers_own_do() {
         let constant = [(); 3].map(|()| number(1.5));
         let (wave, state) = (number(3.0), [(); 3].map(|()| number(2.0)));
         let system = Random { constant, jumps, wave };
-        let mut text = String::from("h = x - 0\nk = y - z/2\nmode main\n  sliding on h = 0, k = 0\n");
+        let mut text =
+            String::from("h = x - 0\nk = y - z/2\nmode main\n  sliding on h = 0, k = 0\n");
         let names = ["x", "y", "z"];
         for i in 0..3 {
-            let (name, next, wave) = (names[i], names[(i + 1) % 3], if i == 0 { wave } else { 0.0 });
+            let (name, next, wave) =
+                (names[i], names[(i + 1) % 3], if i == 0 { wave } else { 0.0 });
             text = format!(
                 "state {name} = {:?}\n{text}  {name}' = {:?} - {name} + {next} + sign(h)*{:?} + \
                  sign(k)*{:?} + {wave:?}*sin(3*t)\n",

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use pyo3::prelude::*;
 use stickslip_expression::SystemFamily;
-use stickslip_solver::{Dop853, Options};
 use stickslip_solver::margin::Margin;
+use stickslip_solver::{Dop853, Options};
 use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
 use crate::failure::bad_input;
