@@ -10,7 +10,8 @@ use crate::branches::Branched;
 use crate::continuation::Continuation;
 use crate::graph::{Formula, Variable};
 use crate::program::{Inputs, Program};
-use crate::run::{Mode, Reaction, Resets, Rest, Runnable, Ticks};
+use crate::resets::Resets;
+use crate::run::{Mode, Reaction, Rest, Runnable, Ticks};
 use crate::system::{self, Next, Rule, Slide, System, Trigger};
 
 /// A system that is ready for parameters.

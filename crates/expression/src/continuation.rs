@@ -5,7 +5,7 @@ use stickslip_solver::dynamic::DynamicSystem;
 use stickslip_solver::sliding::{SampledFilippov, Side, SlidingMode, SwitchedDynamic};
 
 use crate::program::Program;
-use crate::run::Resets;
+use crate::resets::Resets;
 use crate::sliding::several::{count, parts, place_of};
 use crate::sliding::{ABOVE, ABOVE_RELEASED, BELOW, BELOW_RELEASED, SLIDING};
 

@@ -38,10 +38,10 @@
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `sliding` lets it slide along
 //! surfaces, `zeros` finds where guards start from zero, `branches` makes events of where equations
-//! jump, `compiled` makes it ready for parameters, `continuation` decides how it leaves surfaces, `run` is what the solver sees of it, `recording`
-//! a run with its events, `explained` says why one failed, `sensitivity` its derivatives, `family`
-//! the runs of a plane of parameters, and `text` reads and writes it. `docs/systems.md` in the
-//! repository describes the language.
+//! jump, `compiled` makes it ready for parameters, `resets` is what a rule makes of the state,
+//! `continuation` decides how it leaves surfaces, `run` is what the solver sees of it, `recording` a
+//! run with its events, `explained` says why one failed, `sensitivity` its derivatives, `family` the runs of a plane of parameters, and `text`
+//! reads and writes it. `docs/systems.md` in the repository describes the language.
 
 mod branches;
 mod compiled;
@@ -51,6 +51,7 @@ mod family;
 mod graph;
 mod program;
 mod recording;
+mod resets;
 mod run;
 mod sensitivity;
 mod sliding;

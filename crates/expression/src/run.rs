@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
 use stickslip_number::Number;
 use stickslip_solver::dynamic::{DynamicStart, ReadableDynamic};
 use stickslip_solver::{Guard, InvalidValue, Options, Schedule, Times};
 
 use crate::continuation::Continuation;
 use crate::program::Program;
+use crate::resets::Resets;
 use crate::system::Next;
 
 /// A system that can run.
@@ -54,23 +54,6 @@ pub(crate) struct Reaction {
 pub(crate) struct Rest {
     pub(crate) next: usize,
     pub(crate) resets: Resets,
-}
-
-/// New values of components.
-#[derive(Clone, Debug)]
-pub(crate) struct Resets {
-    pub(crate) changed: Arc<[usize]>,
-    pub(crate) values: Program,
-}
-
-impl Resets {
-    pub(crate) fn apply(&self, s: f64, y: &mut [f64]) {
-        let mut values: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.changed.len());
-        self.values.run(s, y, &mut values);
-        for (&component, value) in self.changed.iter().zip(values) {
-            y[component] = value;
-        }
-    }
 }
 
 #[derive(Clone, Debug)]

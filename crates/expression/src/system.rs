@@ -40,7 +40,7 @@ pub struct System {
 pub struct Slide {
     /// The functions whose zeros are the surfaces.
     pub surfaces: Vec<Formula>,
-    /// The slopes of all components for each choice of sides: above those surfaces whose bits are 1.
+    /// The slopes of all components for each choice of sides: above surfaces whose bits are 1.
     pub corners: Vec<Vec<Formula>>,
     /// The place of the first mode. A run that starts there starts on the sides where its state is.
     pub first: usize,
@@ -241,8 +241,8 @@ pub enum Next {
     Slide {
         /// The place of the slide.
         slide: usize,
-        /// The surface i that is reached, or left upwards, as 2i, or left downwards, as 2i + 1; none
-        /// if the rule is another one.
+        /// The surface i that is reached, or left upwards, as 2i, or left downwards, as 2i + 1;
+        /// none if the rule is another one.
         guard: Option<usize>,
     },
 }

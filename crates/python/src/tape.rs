@@ -154,8 +154,9 @@ impl Tape {
     }
 
     /// A system of formulas of this tape: names of parameters; the first mode, the time and the
-    /// state at the start, and what chooses another first mode where it is negative; and modes with slopes and rules. Only rules change the `held` last
-    /// components, which have these names. All modes slide along surfaces with names.
+    /// state at the start, and what chooses another first mode where it is negative; and modes with
+    /// slopes and rules. Only rules change the `held` last components, which have these names. All
+    /// modes slide along surfaces with names.
     fn system(
         &self,
         parameters: Vec<String>,

@@ -5,8 +5,8 @@ use crate::system::{Mode, Next, Rule, System, Trigger};
 
 /// The system with a mode in front of the first ones, whose rule `start` leads to one of them by
 /// the condition: so the condition has a margin, as that of every transition. `None` if there are
-/// several conditions, rules at given times, which would not count at the start, or sides of several
-/// surfaces to be decided there.
+/// several conditions, rules at given times, which would not count at the start, or sides of
+/// several surfaces to be decided there.
 pub(super) fn chosen(system: &System, mut order: RuleOrder) -> Option<(System, RuleOrder)> {
     let &[(condition, other)] = &system.otherwise[..] else { return None };
     let is_clock = |rule: &Rule| !matches!(rule.trigger, Trigger::When(..));

@@ -35,7 +35,7 @@ pub(crate) fn count(surfaces: usize) -> usize {
 /// The fields beside surfaces.
 struct Beside<'a> {
     surfaces: &'a [Formula],
-    /// The slopes of all components for each choice of sides: above those surfaces whose bits are 1.
+    /// The slopes of all components for each choice of sides: above surfaces whose bits are 1.
     corners: &'a [Vec<Formula>],
     /// The rates of the surfaces' functions with these slopes.
     rates: Vec<Vec<Formula>>,

@@ -176,8 +176,9 @@ impl Reader<'_> {
         }
     }
 
-    /// The same condition on a number that is never 0, if only rules change it, or if it stands still
-    /// in the mode of the rule that is read: it may stay on the limit, where a guard decides nothing.
+    /// The same condition on a number that is never 0, if only rules change it, or if it stands
+    /// still in the mode of the rule that is read: it may stay on the limit, where a guard decides
+    /// nothing.
     fn off_limit(&mut self, truth: Truth) -> Truth {
         let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
         let graph = &self.system.graph;
