@@ -39,9 +39,10 @@
 //! computes them, `system` is what a hybrid system consists of, `sliding` lets it slide along
 //! surfaces, `zeros` finds where guards start from zero, `branches` makes events of where equations
 //! jump, `compiled` makes it ready for parameters, `resets` is what a rule makes of the state,
-//! `continuation` decides how it leaves surfaces, `run` is what the solver sees of it, `recording` a
-//! run with its events, `explained` says why one failed, `sensitivity` its derivatives, `family` the runs of a plane of parameters, and `text`
-//! reads and writes it. `docs/systems.md` in the repository describes the language.
+//! `continuation` decides how it leaves surfaces, `run` is what the solver sees of it, `recording`
+//! a run with its events, `explained` says why one failed, `sensitivity` its derivatives, `family`
+//! the runs of a plane of parameters, and `text` reads and writes it. `docs/systems.md` in the
+//! repository describes the language.
 
 mod branches;
 mod compiled;
