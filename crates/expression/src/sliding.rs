@@ -128,13 +128,13 @@ impl System {
         // Where each mode, or the first of its parts, is found.
         let (mut places, mut kinds) = (Vec::new(), Vec::new());
         let (mut count, mut slides) = (0, 0);
-        for place in 0..old.len() {
+        for (place, mode) in old.iter().enumerate() {
             places.push(count);
             let (kind, parts) = match surfaces.get(place).map_or(&[][..], |it| it) {
                 [] => (Kind::Plain, 1),
                 &[surface] if names.is_none() => (Kind::One(surface), PARTS.len()),
                 several if several.len() > MOST || count > MOST_MODES => {
-                    return Err(NotSliding::TooMany(old[place].name.clone()));
+                    return Err(NotSliding::TooMany(mode.name.clone()));
                 }
                 several => {
                     slides += 1;

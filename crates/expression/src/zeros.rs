@@ -116,7 +116,9 @@ impl System {
         let mut held = vec![vec![Held::Nowhere; self.components.len()]; self.modes.len()];
         // The modes of slides are entered in any state.
         let mut open = self.slide_modes();
-        open.iter().for_each(|&mode| held[mode].fill(Held::Free));
+        for &mode in &open {
+            held[mode].fill(Held::Free);
+        }
         for &mode in first {
             self.enter(graph, &mut held[mode], mode, starts);
             open.push(mode);

@@ -221,16 +221,13 @@ impl Beside<'_> {
         let [one, two] = [1.0, 2.0].map(|x| graph.constant(x));
         let mut seen = it;
         for (i, &surface) in self.surfaces.iter().enumerate() {
-            seen = match along.shares[i] {
-                Some(share) => {
-                    let double = graph.binary(Binary::Mul, two, share);
-                    let sign = graph.binary(Binary::Sub, double, one);
-                    graph.with_sign(seen, surface, sign)
-                }
-                None => {
-                    let above = matches!(chosen[i], ABOVE | ABOVE_RELEASED);
-                    graph.on_side(seen, surface, above)
-                }
+            seen = if let Some(share) = along.shares[i] {
+                let double = graph.binary(Binary::Mul, two, share);
+                let sign = graph.binary(Binary::Sub, double, one);
+                graph.with_sign(seen, surface, sign)
+            } else {
+                let above = matches!(chosen[i], ABOVE | ABOVE_RELEASED);
+                graph.on_side(seen, surface, above)
             };
         }
         seen

@@ -316,14 +316,13 @@ impl<'a> Printer<'a> {
         }
         let name = |mode: usize| &self.system.modes[mode].name;
         match rule.next {
-            Next::Stay => {}
+            // With slides, the text is that of the system before.
+            Next::Stay | Next::Slide { .. } => {}
             Next::Mode(mode) => write!(text, " -> {}", name(mode))?,
             Next::Branch(condition, above, below) => {
                 let (condition, above, below) = (sum(condition), name(above), name(below));
                 write!(text, " if {condition} >= 0 -> {above} else -> {below}")?;
             }
-            // The text is that of the system before.
-            Next::Slide { .. } => {}
         }
         match rule.ends_after {
             0 => {}
