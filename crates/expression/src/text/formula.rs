@@ -176,9 +176,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The same condition on a number that is never 0, if only rules change it, or if it stands
-    /// still in the mode of the rule that is read: it may stay on the limit, where a guard decides
-    /// nothing.
+    /// The same condition of a rule on a number that is never 0, if it stands still in the mode, as
+    /// what only rules change: it may stay on the limit, where a guard decides nothing.
     fn off_limit(&mut self, truth: Truth) -> Truth {
         let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
         let graph = &self.system.graph;
@@ -198,13 +197,12 @@ impl Reader<'_> {
         let stays = |it: &Variable| match *it {
             Variable::Time => false,
             Variable::Component(place) => {
-                let slope = self.slopes[place as usize].filter(|_| self.in_rule);
-                let still = slope.and_then(|slope| self.system.graph.value(slope)) == Some(0.0);
-                self.system.components[place as usize].discrete || still
+                let slope = self.slopes[place as usize];
+                slope.and_then(|slope| self.system.graph.value(slope)) == Some(0.0)
             }
             Variable::Parameter(_) => true,
         };
-        if !reads.iter().all(stays) || components().next().is_none() {
+        if !self.in_rule || !reads.iter().all(stays) || components().next().is_none() {
             return truth;
         }
         let graph = &mut self.system.graph;
