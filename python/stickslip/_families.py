@@ -7,7 +7,8 @@ every curve in a window of the parameters on which the sequence of events of its
 from __future__ import annotations
 
 import graphlib
-from collections.abc import Callable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from itertools import count, pairwise
@@ -70,6 +71,9 @@ __all__ = [
     "trace_family",
 ]
 
+
+#: Labels and margins count so many events, unless told otherwise.
+MOST_SWITCHES = 10_000_000
 
 _Window: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
@@ -134,12 +138,15 @@ class HybridFamily:
 
     t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if
     they depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that
-    returns the state, the mode, or (mode, state).
+    returns the state, the mode, or (mode, state). If it is recorded and chooses between two modes,
+    the choice is an event "start", whose condition is a boundary.
 
     name, axes: what was traced and the names of the two parameters, for files and pictures. rtol,
     atol, max_step, first_step, guard_scale: as in `solve`; margins are as accurate as the runs. The
     method is "dop853". max_switches: itineraries are told apart up to so many events. Where events
-    accumulate, there are boundaries without end, unless this is a small number.
+    accumulate, there are boundaries without end, unless this is a small number: without it, atlases
+    and stacks choose one from 4 to 12 if events accumulate in a run of the window, and warn; labels
+    and margins have 10 000 000.
 
     record: as in `solve`. Recorded functions run as formulas, whose guards are decided, on all
     threads. They are compared with the functions at points of what is asked for; `reason` says why
@@ -174,7 +181,7 @@ class HybridFamily:
         atol: float = 1e-13,
         max_step: float = np.inf,
         first_step: float | None = None,
-        max_switches: int = 10_000_000,
+        max_switches: int | None = None,
         guard_scale: float | None = None,
         record: bool | None = None,
     ) -> None:
@@ -206,9 +213,9 @@ class HybridFamily:
                 for guard in source.guards:
                     for what, function in (("reset", guard.reset), ("condition", guard.condition)):
                         _check_parameters(function, f"the {what} of guard {guard.name!r}")
-        settings = settings_of(
-            "dop853", (rtol, atol), (max_step, first_step), (max_switches, MOST_STEPS)
-        )
+        self._told = max_switches
+        most = (MOST_SWITCHES if max_switches is None else max_switches, MOST_STEPS)
+        settings = settings_of("dop853", (rtol, atol), (max_step, first_step), most)
         settings["guard_scale"] = (
             None if guard_scale is None else _number(guard_scale, "guard_scale")
         )
@@ -249,15 +256,26 @@ class HybridFamily:
                 del settings["guard_scale"]
                 self._settings = settings
                 self._end = end
-                self._native = _native.HybridFamily.of_formulas(
-                    self._recorded.system._native,
-                    [0, 1],
-                    [0.0, 0.0],
-                    end,
-                    settings,
-                    (self.name, list(self.axes)),
-                    (names, places),
-                )
+                front = range(self._recorded.front)
+                rows = [
+                    [*front, *(len(front) + place for place in row)]
+                    for row in places
+                    for _ in range(self._recorded.width)
+                ]
+                try:
+                    self._native = _native.HybridFamily.of_formulas(
+                        self._recorded.system._native,
+                        [0, 1],
+                        [0.0, 0.0],
+                        end,
+                        settings,
+                        (self.name, list(self.axes)),
+                        (names, rows),
+                    )
+                except ValueError as reason:
+                    raise CannotRecord(str(reason)) from None
+                # A start that chooses the mode is an event.
+                self.guards = tuple(self._native.guards())
                 self.reason = None
             except CannotRecord as reason:
                 self._fall_back(str(reason))
@@ -266,6 +284,7 @@ class HybridFamily:
         if self._must_record:
             raise ValueError(f"record = True, but {reason}")
         self.reason, self._recorded, self._native = reason, None, self._callables
+        self.guards = tuple(self._native.guards())
 
     def _compare(self, x: ArrayLike, y: ArrayLike) -> None:
         """Compares formulas with their functions at up to three points, before they are used."""
@@ -300,7 +319,7 @@ class HybridFamily:
         atol: float = 1e-13,
         max_step: float = np.inf,
         first_step: float | None = None,
-        max_switches: int = 10_000_000,
+        max_switches: int | None = None,
     ) -> HybridFamily:
         """The family of a system of formulas over two of its parameters, by their names.
 
@@ -330,10 +349,10 @@ class HybridFamily:
                 raise ValueError(f"{axis!r} is no parameter; expected one of {', '.join(known)}")
         if end is not None and np.isnan(_number(end, "end")):
             raise ValueError(f"end = {end!r}; expected a number")
-        settings = settings_of(
-            "dop853", (rtol, atol), (max_step, first_step), (max_switches, MOST_STEPS)
-        )
+        most = (MOST_SWITCHES if max_switches is None else max_switches, MOST_STEPS)
+        settings = settings_of("dop853", (rtol, atol), (max_step, first_step), most)
         family = cls.__new__(cls)
+        family._told = max_switches
         family._made = partial(
             cls.of, system, x, y, parameters=parameters, end=end, name=name, rtol=rtol, atol=atol,
             max_step=max_step, first_step=first_step, max_switches=max_switches,
@@ -350,6 +369,14 @@ class HybridFamily:
 
     def __reduce__(self) -> Any:
         return _made_again, (self._made,)
+
+    def _up_to(self, events: int | None) -> _native.HybridFamily:
+        """The family of an atlas, whose runs are told apart up to so many events."""
+        return self._native if events is None else self._native.up_to(events)
+
+    def _in(self, window: _Window) -> _native.HybridFamily:
+        """The family of an atlas of the window."""
+        return self._up_to(_events_of([self], window, warns=False))
 
     def label(self, x: float, y: float) -> Itinerary:
         """What the run with the parameters x and y does."""
@@ -469,8 +496,9 @@ def trace_family(
     check(progress)
     _check_calls(None, cancelled)
     family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
+    native = family._up_to(_events_of([family], window))
     with reported(progress, f"trace of {family.name}") as report:
-        found = family._native.trace(window, text, _threads(threads), (report, cancelled))
+        found = native.trace(window, text, _threads(threads), (report, cancelled))
     return finished(found)
 
 
@@ -497,6 +525,25 @@ def _survey(
             f"tolerance = {tolerance}; expected above 0 and below a thousandth of the window"
         )
     return window, text
+
+
+def _events_of(
+    families: Iterable[HybridFamily], window: _Window, *, warns: bool = True
+) -> int | None:
+    """How many events count in atlases where events accumulate; None if all do."""
+    seen = [one._native.accumulation(window) for one in families if one._told is None]
+    found = max((one for one in seen if one is not None), default=None)
+    if found is None:
+        return None
+    events, runs, of = found
+    if warns:
+        warnings.warn(
+            f"events accumulate in {runs} of {of} runs on a grid: runs are told apart up to event "
+            f"{events}; max_switches chooses another number",
+            UserWarning,
+            stacklevel=3,
+        )
+    return events
 
 
 def _check_calls(progress: Any, cancelled: Any) -> None:

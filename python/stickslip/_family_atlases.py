@@ -167,7 +167,7 @@ class FamilyAtlas(Plane[_native.FamilyAtlas]):
         """
         with reported(progress, f"trace of {self.family}") as report:
             calls = (report, cancelled)
-            return finished(family._native.resume(self._native, _threads(threads), calls))
+            return finished(family._in(self.window).resume(self._native, _threads(threads), calls))
 
     @property
     def family(self) -> str:
@@ -293,7 +293,7 @@ class FamilyAtlas(Plane[_native.FamilyAtlas]):
         """
         (x, y), shape = _pairs(x, y)
         family._compare(x, y)
-        found = family._native.decide(self._native, x, y, _threads(threads))
+        found = family._in(self.window).decide(self._native, x, y, _threads(threads))
         return _objects([one and _label(one, family.guards) for one in found], shape)
 
     def _lines(self) -> Iterator[tuple[str, Floats]]:

@@ -144,13 +144,19 @@ def stack_family(
     if not 1e-9 <= _number(width, "width") <= 0.1:
         raise ValueError(f"width = {width}; expected 1e-9 to 0.1")
 
-    def member(value: float) -> _native.HybridFamily:
+    def made(value: float) -> HybridFamily:
         found = family(value)
         if not isinstance(found, HybridFamily):
             kind = type(found).__name__
             raise TypeError(f"family({value}) is of type {kind}; expected a HybridFamily")
+        return found
+
+    events = _events_of(map(made, heights.tolist()), window)
+
+    def member(value: float) -> _native.HybridFamily:
+        found = made(value)
         found._compare(*([*interval, sum(interval) / 2.0] for interval in window))
-        return found._native
+        return found._up_to(events)
 
     search = (text, width, _count(atlases, "atlases"))
     with reported(progress, "stack") as report:

@@ -7,7 +7,6 @@ repository.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike
 from pathlib import Path
@@ -20,11 +19,10 @@ from stickslip import _attractors, _native, _orbits
 from stickslip._attractors import Basins, Diagram, Exponents
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
-from stickslip._names import Named
 from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
-from stickslip._solutions import Names, Solution, with_variables
+from stickslip._solutions import Beside, Names, Solution
 from stickslip._collisions import _threads
 from stickslip._studies import Study, _study
 
@@ -42,11 +40,13 @@ class FormulaSystem:
 
     def __init__(self, text: str) -> None:
         self._native = _native.FormulaSystem(text)
+        #: The surfaces of functions of Python.
+        self._surfaces: tuple[str, ...] = ()
 
     @classmethod
-    def _of(cls, native: _native.FormulaSystem) -> FormulaSystem:
+    def _of(cls, native: _native.FormulaSystem, surfaces: Sequence[str] = ()) -> FormulaSystem:
         system = cls.__new__(cls)
-        system._native = native
+        system._native, system._surfaces = native, tuple(surfaces)
         return system
 
     @property
@@ -443,19 +443,16 @@ class FormulaSystem:
         found: dict[str, Any],
         dense: bool,
         rerun: Rerun,
-        event_names: list[str] | None = None,
-        variables: Named | None = None,
+        names: Names | None = None,
+        beside: Beside | None = None,
     ) -> Solution:
-        names = self._names
-        if event_names is not None:
-            names = replace(names, events=event_names)
         return Solution(
             found,
-            names,
+            names or self._names,
             start=found["start_time"],
             dense=dense,
             guards="decided",
-            beside=with_variables(found, variables),
+            beside=beside,
             again=(self, rerun),
         )
 
@@ -472,12 +469,15 @@ class FormulaSystem:
         return f"FormulaSystem({', '.join(self.components)}; modes {self.modes}; {values})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self.text, list(self.parameters), self.components, self.modes)
+        names = (list(self.parameters), self.components, self.modes)
+        return _restored, (self.text, list(self._surfaces), *names)
 
 
-def _restored(text: str, *names: list[str]) -> FormulaSystem:
+def _restored(text: str, surfaces: list[str], *names: list[str]) -> FormulaSystem:
     """The system of a text, under the names that it had before."""
-    return FormulaSystem._of(_native.FormulaSystem(text).renamed(*names))
+    read = _native.FormulaSystem
+    native = read.sliding(text, surfaces) if surfaces else read(text)
+    return FormulaSystem._of(native.renamed(*names), surfaces)
 
 
 def system(text: str) -> FormulaSystem:

@@ -140,6 +140,8 @@ def _solved(job: _Job, sides: list[int], record: bool | None, report: Report | N
     table, (first, start, end) = job.table, job.begin
     if record is False:
         table.reason = "record = False"
+    elif sides:
+        table.reason = "sides are given"
     elif record is None and job.state.size > MOST_RECORDED:
         table.reason = (
             f"the state has more than {MOST_RECORDED} components; record=True records it"

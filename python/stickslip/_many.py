@@ -115,6 +115,8 @@ def solve_many(
             recorded = Recorded(table, (place, start), state, names)
         except CannotRecord as reason:
             raise ValueError(f"many runs are those of formulas, but {reason}") from None
+        place *= recorded.width
+        state = np.append(state, table.variables.flat)
         made, base = recorded.system, [0.0] * len(names)
     components = made.components
     steps, most = (max_step, first_step), (max_switches, max_steps)

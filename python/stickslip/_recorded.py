@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -14,7 +15,7 @@ from stickslip._compiled import Compiled, Function
 from stickslip._derivatives import Rerun
 from stickslip._progress import Report
 from stickslip._recording import Tape
-from stickslip._solutions import DenseOutput, Solution
+from stickslip._solutions import Beside, DenseOutput, Solution, with_variables
 from stickslip._symbols import CannotRecord, Symbol, Symbols, array_of
 from stickslip._systems import Guard, Mode, _Clock, _Source
 from stickslip._formulas import FormulaSystem
@@ -27,7 +28,8 @@ class Recorded:
     """The formulas of a system, and the functions from which they come.
 
     names: those of parameters that functions get before further arguments. values: their values, if
-    these are known. beginning: a function of the start that returns the state there.
+    these are known. beginning: a function of the start that returns the state there, the mode, or
+    (mode, state).
 
     Raises CannotRecord with the reason, if a function is no formula.
     """
@@ -43,10 +45,6 @@ class Recorded:
     ) -> None:
         if not state.size:
             raise CannotRecord("there is no state")
-        if table.signs:
-            raise CannotRecord("the system has surfaces")
-        if table.variables and (beginning is not None or values is None):
-            raise CannotRecord("the system has variables")
         if table.apart:
             raise CannotRecord("guards of several modes are counted until the run ends")
         self.table, self.state, self.start = table, state, begin[1]
@@ -58,26 +56,44 @@ class Recorded:
         places = range(state.size, state.size + len(held))
         self.held = [Symbol(self.tape, native.component(place)) for place in places]
         variables = (table.variables.tuple_of(self.held, Symbols),) if held else ()
-        self.args = (*variables, *symbols, *table.args)
+        self.behind = (*symbols, *table.args)
+        self.args = (*variables, *self.behind)
         self.values = list(values) if values is not None else None if names else []
         self.beginning = beginning
-        #: For each mode, functions with their formulas: the right-hand side, guards, and resets.
-        self.slopes: list[tuple[str, Function, list[int]]] = []
+        surfaces = table.surfaces.items()
+        self.surfaces = {
+            name: self.formulas(f"surface {name!r}", surface, 1)[0] for name, surface in surfaces
+        }
+        #: The modes that take the place of one, and the rules of surfaces in front of its own.
+        self.width = 5 ** len(self.surfaces) + 1 if self.surfaces else 1
+        self.front = 2 * len(self.surfaces)
+        #: For each mode, functions with their formulas: the right-hand side with signs of surfaces,
+        #: guards, and resets.
+        self.slopes: list[list[tuple[str, Function, list[int], Any]]] = []
         self.guards: list[list[tuple[str, Function, list[int]]]] = []
         self.resets: list[dict[int, tuple[str, Function]]] = []
         self.transitions: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         self.rests: list[dict[int, tuple[str, Callable[..., Any], int, list[int] | None]]] = []
         self.sets: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         modes = [self.mode(mode) for mode in table.system_modes]
+        self.first = begin[0]
+        #: What chooses the first mode, and that where it is below 0.
+        self.otherwise: tuple[int, int] | None = None
         if beginning is None:
             first = [native.constant(value) for value in state.tolist()]
         else:
-            first = self.formulas("start", beginning, state.size, (self.start, state.tolist()))
+            now = (table.variables.named(held),) if held else ()
+            at, args = (self.start, state.tolist()), (*now, *self.behind)
+            first = self.begun(beginning, args, at)
         first += [native.constant(value) for value in held]
-        self.first, self.from_start = begin[0], first
-        given = (begin[0], self.start, first)
-        labels = table.variables.labels
-        self.system = FormulaSystem._of(native.system(list(names), given, modes, labels))
+        self.from_start = first
+        given = (self.first, self.start, first, self.otherwise)
+        labels, surfaces = table.variables.labels, list(self.surfaces.items())
+        try:
+            made = native.system(list(names), given, modes, labels, surfaces)
+        except ValueError as reason:
+            raise CannotRecord(str(reason)) from None
+        self.system = FormulaSystem._of(made, list(self.surfaces))
 
     def formulas(
         self,
@@ -85,10 +101,12 @@ class Recorded:
         function: Function,
         count: int,
         at: tuple[float, list[float]] | None = None,
+        args: tuple[Any, ...] | None = None,
     ) -> list[int]:
         """The formulas of a function that returns so many numbers."""
+        args = self.args if args is None else args
         found = self.recorded(
-            what, function, lambda plain: self.tape.record(plain, self.state.size, self.args, at)
+            what, function, lambda plain: self.tape.record(plain, self.state.size, args, at)
         )
         if len(found) != count:
             raise CannotRecord(f"{what}: it returns {len(found)} numbers instead of {count}")
@@ -114,8 +132,7 @@ class Recorded:
         about = "the right-hand side"
         if not self.table.plain:
             about += f" of mode {mode.name!r}"
-        slopes = self.formulas(about, mode.right_hand_side, self.state.size)
-        self.slopes.append((about, mode.right_hand_side, slopes))
+        slopes = self.sided(about, mode.right_hand_side)
         self.guards.append([])
         self.resets.append({})
         self.transitions.append({})
@@ -132,6 +149,45 @@ class Recorded:
             for guard, value in zip(source.guards, values, strict=True):
                 rules.append(self.rule(guard, value, (mode, slopes, source), len(rules)))
         return mode.name, slopes, rules
+
+    def begun(
+        self, beginning: Function, args: tuple[Any, ...], at: tuple[float, list[float]]
+    ) -> list[int]:
+        """The formulas of the state at the start, and the first mode."""
+        names, n = self.table.names, self.state.size
+
+        def record(plain: Callable[..., Any]) -> Any:
+            return self.tape.choice(plain, n, args, names, at)
+
+        choice, found = self.recorded("start", beginning, record)
+        state = [symbol.id for symbol in found or map(self.tape.number, at[1])]
+        if len(state) != n:
+            raise CannotRecord(f"start: it returns {len(state)} numbers instead of {n}")
+        if isinstance(choice, tuple):
+            self.first, self.otherwise = choice[1], (choice[0].id, choice[2])
+        elif choice is not None:
+            self.first = choice
+        return state
+
+    def sided(self, about: str, function: Function) -> list[int]:
+        """The formulas of a right-hand side, which choose between those beside surfaces."""
+        variables = self.args[: len(self.args) - len(self.behind)]
+        every: list[list[int]] = []
+        self.slopes.append([])
+        for corner in range(1 << len(self.surfaces)):
+            above = [corner >> place & 1 for place in range(len(self.surfaces))]
+            signs = self.table.signs.named([2.0 * one - 1.0 for one in above]) if above else None
+            args = self.args if signs is None else (*variables, signs, *self.behind)
+            slopes = self.formulas(about, function, self.state.size, None, args)
+            self.slopes[-1].append((about, function, slopes, signs))
+            every.append(slopes)
+        for surface in reversed(self.surfaces.values()):
+            half = len(every) // 2
+            every = [
+                [self.tape.native.select(surface, *pair) for pair in zip(above, below, strict=True)]
+                for below, above in zip(every[:half], every[half:], strict=True)
+            ]
+        return every[0]
 
     def rule(
         self, guard: Guard, value: int | None, of: tuple[Mode, list[int], _Source], place: int
@@ -256,20 +312,49 @@ class Recorded:
     ) -> Solution:
         """Runs the system, and compares the formulas with their functions."""
         first, start, end = begin
+        first *= self.width
         settings = {name: value for name, value in settings.items() if name != "guard_scale"}
         given = (first, start, self.state.tolist() + self.table.variables.flat.tolist())
         values = self.values or []
         found = self.system._native.run(values, given, end, settings, times, report)
         self.compare(found, tuple(values))
         rerun: Rerun = (values, given, end, settings)
-        names, variables = self.table.event_names, self.table.variables
-        return self.system._solution(found, dense, rerun, names, variables)
+        beside = with_variables(found, self.table.variables)
+        names = replace(self.system._names, events=self.table.event_names)
+        if self.surfaces:
+            names = replace(names, modes=[it for it in self.table.names for _ in range(self.width)])
+            beside = self.with_sides(found, beside or Beside({}, {}, [], {}))
+        return self.system._solution(found, dense, rerun, names, beside)
+
+    def with_sides(self, found: dict[str, Any], beside: Beside) -> Beside:
+        """What stands beside a solution, with the sides of surfaces."""
+        signs = np.array([1, -1, 0, 1, -1], dtype=np.int8)
+
+        def sides(modes: NDArray[np.int64]) -> dict[str, NDArray[np.int8]]:
+            parts = modes % self.width
+            every = enumerate(self.surfaces)
+            return {name: signs[parts // 5**place % 5] for place, name in every}
+
+        kinds = [(name, "i1") for name in self.surfaces]
+        columns = [("sides_from", kinds), ("sides_to", kinds), ("unique", "?")]
+        behind = {
+            "sides_from": sides(found["event_from"]),
+            "sides_to": sides(found["event_to"]),
+            # Where it is not, the formulas end.
+            "unique": np.ones(len(found["event_to"]), dtype=bool),
+        }
+        return replace(
+            beside,
+            sides=sides(found["modes"]),
+            columns=[*beside.columns, *columns],
+            behind=beside.behind | behind,
+        )
 
     def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that are not what their functions return with values of parameters."""
         self.compare_start(values)
         dense = DenseOutput(found, np.array(self.table.names), self.start)
-        starts, sizes, modes = found["starts"], found["sizes"], found["segment_modes"]
+        starts, sizes, modes = found["starts"], found["sizes"], found["segment_modes"] // self.width
         # In order, and each once (`unique` imports masked arrays).
         chosen = np.linspace(0, starts.size - 1, MOST_PLACES).astype(int)
         chosen = chosen[np.diff(chosen, prepend=-1) > 0][: starts.size]
@@ -280,7 +365,8 @@ class Recorded:
         n = self.state.size
         before = found["event_before"].reshape(-1, n + len(self.held))
         after = found["event_after"].reshape(-1, n + len(self.held))
-        events = zip(found["event_from"], found["event_guards"], strict=True)
+        left, guards = found["event_from"] // self.width, found["event_guards"] - self.front
+        events = zip(left, guards, strict=True)
         for row, (mode, guard) in enumerate(list(events)[:MOST_PLACES]):
             if guard in self.resets[mode] and not (before[row] == after[row]).all():
                 what, reset = self.resets[mode][guard]
@@ -306,8 +392,9 @@ class Recorded:
                 what, transition = self.transitions[mode][guard]
                 t, y = float(found["event_times"][row]), before[row]
                 to, state = self.call(transition, (t, y), values)
-                if to is not None and to != found["event_to"][row]:
-                    name = self.table.names[found["event_to"][row]]
+                target = found["event_to"][row] // self.width
+                if to is not None and to != target:
+                    name = self.table.names[target]
                     raise CannotRecord(
                         f"{what}: at t = {t!r} it leads to mode {self.table.names[to]!r}, and its "
                         f"formulas to {name!r}: it depends on more than t and y"
@@ -321,15 +408,29 @@ class Recorded:
         at = (self.start, np.append(self.state, self.table.variables.flat))
         native = self.tape.native
         found = native.evaluate(self.from_start, self.start, at[1].tolist(), list(values))
+        first = self.first
+        if self.otherwise is not None:
+            (choice,) = native.evaluate([self.otherwise[0]], self.start, [], list(values))
+            first = self.otherwise[1] if choice < 0.0 else first
         if self.beginning is not None:
-            self.same("start", self.beginning, at, values, found)
-        self.compare_at(self.first, self.start, np.array(found), values)
+            transition = self.table.transition(self.beginning, "start")
+            to, state = self.call(transition, at, values)
+            if to is not None and to != first:
+                raise CannotRecord("start: it depends on more than t and y")
+            if state is not None:
+                given = partial(lambda state, *_: state, state)
+                self.same("start", given, at, values, found[: self.state.size])
+        self.compare_at(first, self.start, np.array(found), values)
 
     def compare_at(
         self, mode: int, t: float, y: NDArray[np.float64], values: tuple[float, ...]
     ) -> None:
-        for what, function, formulas in [self.slopes[mode], *self.guards[mode]]:
-            found = self.tape.native.evaluate(formulas, t, y.tolist(), list(values))
+        native = self.tape.native
+        for what, function, formulas, signs in self.slopes[mode]:
+            found = native.evaluate(formulas, t, y.tolist(), list(values))
+            self.same(what, function, (t, y), values, found, signs)
+        for what, function, formulas in self.guards[mode]:
+            found = native.evaluate(formulas, t, y.tolist(), list(values))
             self.same(what, function, (t, y), values, found)
 
     def call(
@@ -337,11 +438,13 @@ class Recorded:
         function: Callable[..., Any],
         at: tuple[float, NDArray[np.float64]],
         values: tuple[float, ...],
+        signs: Any = None,
     ) -> Any:
         """What a function returns at a time, and at a state with variables behind it."""
         n = self.state.size
         held = (self.table.variables.named(at[1][n:]),) if self.held else ()
-        return function(at[0], at[1][:n].copy(), *held, *values, *self.table.args)
+        signs = () if signs is None else (signs,)
+        return function(at[0], at[1][:n].copy(), *held, *signs, *values, *self.table.args)
 
     def same(
         self,
@@ -350,13 +453,14 @@ class Recorded:
         at: tuple[float, NDArray[np.float64]],
         values: tuple[float, ...],
         recorded: list[float],
+        signs: Any = None,
     ) -> None:
         """Refuses a function that returns something else than its formulas."""
         t, _ = at
         assert not isinstance(function, Compiled)
         try:
             with np.errstate(all="ignore"):
-                found = self.call(function, at, values)
+                found = self.call(function, at, values, signs)
                 returned = np.asarray(found, dtype=float).reshape(-1).tolist()
         except Exception as error:
             # Without formulas it says so itself, if it is called there.

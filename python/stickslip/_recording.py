@@ -46,13 +46,18 @@ class Tape(Decisions):
         return self._merged([(way, numbers(found)) for way, found in ways], 0)
 
     def choice(
-        self, function: Callable[..., Any], n: int, args: tuple[Any, ...], names: list[str]
+        self,
+        function: Callable[..., Any],
+        n: int,
+        args: tuple[Any, ...],
+        names: list[str],
+        at: tuple[float, Sequence[float]] | None = None,
     ) -> tuple[tuple[Symbol, int, int] | int | None, list[Symbol] | None]:
         """What a transition does that returns a state, a mode, or both: a mode, None if that stays,
         or (condition, mode above, mode below); and the state, None if that stays."""
         modes: list[tuple[Any, int | None]] = []
         states: list[tuple[Any, list[Symbol] | None]] = []
-        for way, found in self.ways(function, n, args):
+        for way, found in self.ways(function, n, args, at):
             state = found
             if isinstance(found, tuple) and len(found) == 2 and isinstance(found[0], str | Mode):
                 found, state = found

@@ -289,7 +289,8 @@ class HybridSystem:
     sliding: up to 4 surfaces, each a function h(t, y) whose zero it is. Right-hand sides get the
     signs of these functions, each +1 or -1, as a named tuple after time, state and variables. The
     solution crosses a surface, or slides along it where the fields on both sides lead to it
-    (Filippov). With several surfaces a right-hand side is affine in the signs.
+    (Filippov). With several surfaces a right-hand side is affine in the signs. Recorded functions
+    are decided, as they are without surfaces.
 
     >>> belt = HybridSystem(sliding={"belt": lambda t, y: y[1] - 0.5})
     >>> mass = belt.mode("mass", lambda t, y, sign: [y[1], -y[0] - 0.8 * sign.belt])

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use stickslip_solver::{Direction, Guard, InvalidValue, Times};
 
 use crate::branches::Branched;
+use crate::continuation::Continuation;
 use crate::graph::{Formula, Variable};
 use crate::program::{Inputs, Program};
-use crate::run::{Mode, Reaction, Resets, Rest, Runnable, Ticks};
-use crate::system::{self, Next, Rule, System, Trigger};
+use crate::resets::Resets;
+use crate::run::{Mode, Reaction, Rest, Runnable, Ticks};
+use crate::system::{self, Next, Rule, Slide, System, Trigger};
 
 /// A system that is ready for parameters.
 #[derive(Clone, Debug)]
@@ -22,8 +24,9 @@ pub struct Compiled {
     /// What fires at times in each mode.
     clocks: Vec<Vec<Clock>>,
     first: usize,
-    /// The first mode where the last number is negative.
-    otherwise: Option<usize>,
+    /// The first mode where one of the last numbers is negative, and none before it.
+    otherwise: Vec<usize>,
+    slides: Vec<Continuation>,
     /// Computes [`System::fixed_formulas`] from parameters.
     numbers: Program,
     count: usize,
@@ -88,7 +91,8 @@ impl System {
                 .collect(),
             clocks: self.modes.iter().map(|mode| mode.rules.iter().map(clock).collect()).collect(),
             first: self.first,
-            otherwise: self.otherwise.map(|(_, mode)| mode),
+            otherwise: self.otherwise.iter().map(|(_, mode)| *mode).collect(),
+            slides: self.slides.iter().map(|slide| self.continuation(slide)).collect(),
             numbers: Program::compile(&self.graph, &fixed, inputs),
             count: fixed.len(),
             has: (self.start.is_some(), self.end.is_some()),
@@ -128,6 +132,15 @@ impl System {
     fn program(&self, formulas: &[Formula]) -> Program {
         let (components, parameters) = (self.components.len(), self.parameters.len());
         Program::compile(&self.graph, formulas, Inputs { components, parameters, fixed: true })
+    }
+
+    fn continuation(&self, slide: &Slide) -> Continuation {
+        Continuation {
+            first: slide.first,
+            count: slide.surfaces.len(),
+            surfaces: self.program(&slide.surfaces),
+            corners: slide.corners.iter().map(|slopes| self.program(slopes)).collect(),
+        }
     }
 
     fn resets(&self, changes: &[(usize, Formula)]) -> Resets {
@@ -220,16 +233,17 @@ impl Compiled {
             ticks.push(of_mode.collect::<Result<_, _>>()?);
         }
         let mut first = self.first;
-        if let Some(other) = self.otherwise {
-            let choice = numbers.next(|| "what chooses the first mode".to_owned())?;
+        for &other in self.otherwise.iter().rev() {
+            let choice = numbers.last(|| "what chooses the first mode".to_owned())?;
             first = if choice < 0.0 { other } else { first };
         }
         // Where a branch has no value, the system runs as it is.
         let branched = self.branched.as_ref().and_then(|branched| {
             Some(Box::new((branched.0.with(parameters).ok()?, branched.1.with(parameters))))
         });
-        Ok(Runnable {
+        let runnable = Runnable {
             branched,
+            slides: self.slides.iter().map(|slide| slide.with(parameters)).collect(),
             state: state?,
             tolerances: Vec::new(),
             modes: self.modes.iter().map(|mode| mode.with(parameters)).collect(),
@@ -237,7 +251,8 @@ impl Compiled {
             first,
             start: start.transpose()?.unwrap_or(0.0),
             end: end.transpose()?.unwrap_or(f64::INFINITY),
-        })
+        };
+        Ok(runnable.on_sides())
     }
 }
 
@@ -247,6 +262,11 @@ struct Numbers(std::vec::IntoIter<f64>);
 impl Numbers {
     fn next(&mut self, what: impl FnOnce() -> String) -> Result<f64, InvalidValue> {
         let value = self.0.next().unwrap_or(f64::NAN);
+        finite(what, value).map(|()| value)
+    }
+
+    fn last(&mut self, what: impl FnOnce() -> String) -> Result<f64, InvalidValue> {
+        let value = self.0.next_back().unwrap_or(f64::NAN);
         finite(what, value).map(|()| value)
     }
 }

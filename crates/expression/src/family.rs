@@ -1,12 +1,15 @@
 //! A system and two of its parameters, as a family of runs whose boundaries can be traced.
 
 mod align;
+mod start;
+
+use std::borrow::Cow;
 
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, InvalidValue, Options, RunError};
 use stickslip_tracer::{
-    DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun,
-    Itinerary, Point, Window,
+    Accumulation, DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError,
+    FreeRun, Itinerary, Point, Window,
 };
 
 pub use align::RuleOrder;
@@ -67,17 +70,6 @@ impl DynamicProblem for Plane {
     }
 }
 
-/// Where runs in a window have so many events that they accumulate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Accumulation {
-    /// The events up to which runs should be told apart.
-    pub events: usize,
-    /// The number of runs on a lattice in which events accumulate.
-    pub runs: usize,
-    /// The number of runs on the lattice.
-    pub of: usize,
-}
-
 impl SystemFamily {
     /// The family over the parameters at the places `axes`. The other ones have the values in
     /// `parameters`. All runs end at `end`, if it is given.
@@ -85,7 +77,7 @@ impl SystemFamily {
     /// # Errors
     /// [`InvalidValue`] if there are not as many parameters as the system has, if one is not
     /// finite, if an axis is none of them or both are the same, or if the first mode depends on
-    /// one.
+    /// one by several conditions, or beside rules that act at given times.
     pub fn new(
         system: &System,
         axes: [usize; 2],
@@ -112,9 +104,16 @@ impl SystemFamily {
             let count = order.names.len();
             return Err(InvalidValue::new("the number of rules in order", count, expected));
         }
-        axes.iter().try_for_each(|&axis| system.require_one_first_mode(axis))?;
+        let by_axes = axes.iter().find_map(|&axis| system.require_one_first_mode(axis).err());
+        let (system, order) = match by_axes {
+            None => (Cow::Borrowed(system), order),
+            Some(refusal) => {
+                let (system, order) = start::chosen(system, order).ok_or(refusal)?;
+                (Cow::Owned(system), order)
+            }
+        };
         // Sequences are those of rules alone.
-        let compiled = order.align(system).compile_as_it_is()?;
+        let compiled = order.align(&system).compile_as_it_is()?;
         let rules = order.names;
         compiled.check(parameters)?;
         let count = parameters.len();
@@ -160,10 +159,6 @@ impl SystemFamily {
     /// The events up to which runs in a window should be told apart, if events accumulate in some
     /// of them; `None` if this is seen nowhere.
     ///
-    /// Where events accumulate there are boundaries without end, and a run may have more events
-    /// than can be waited for. Runs on a lattice are followed up to 200 events. Nine tenths of
-    /// those that end have no more than the result, which is from 4 to 12.
-    ///
     /// ```
     /// use stickslip_expression::{System, SystemFamily};
     /// use stickslip_solver::Options;
@@ -182,29 +177,7 @@ impl SystemFamily {
     /// ```
     #[must_use]
     pub fn accumulation(&self, window: &Window) -> Option<Accumulation> {
-        const CELLS: usize = 16;
-        const MANY: usize = 200;
-        const MOST: usize = 12;
-        const LEAST: usize = 4;
-        let few = self.clone().up_to(MANY);
-        let cell = window.extent() / CELLS as f64;
-        let place = |index: usize| {
-            let part = Point::new((index / CELLS) as f64 + 0.5, (index % CELLS) as f64 + 0.5);
-            window.low + cell.component_mul(&part)
-        };
-        let labels = (0..CELLS * CELLS).filter_map(|index| few.label(&place(index)).ok());
-        let (mut runs, mut counts) = (0, Vec::new());
-        for label in labels {
-            match label {
-                Itinerary::Fires(events) => counts.push(events.len()),
-                Itinerary::Begins(_) | Itinerary::Accumulates => runs += 1,
-                Itinerary::Unfinished | Itinerary::Fails => {}
-            }
-        }
-        counts.sort_unstable();
-        let most = counts.get(counts.len() * 9 / 10).map_or(LEAST, |&most| most);
-        let events = most.clamp(LEAST, MOST);
-        (runs > 0).then_some(Accumulation { events, runs, of: CELLS * CELLS })
+        Accumulation::seen(&self.clone().up_to(Accumulation::EVENTS), window)
     }
 
     /// The run at `point`; `None` if there is none.

@@ -38,18 +38,21 @@
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `sliding` lets it slide along
 //! surfaces, `zeros` finds where guards start from zero, `branches` makes events of where equations
-//! jump, `compiled` makes it ready for parameters, `run` is what the solver sees of it, `recording`
+//! jump, `compiled` makes it ready for parameters, `resets` is what a rule makes of the state,
+//! `continuation` decides how it leaves surfaces, `run` is what the solver sees of it, `recording`
 //! a run with its events, `explained` says why one failed, `sensitivity` its derivatives, `family`
 //! the runs of a plane of parameters, and `text` reads and writes it. `docs/systems.md` in the
 //! repository describes the language.
 
 mod branches;
 mod compiled;
+mod continuation;
 mod explained;
 mod family;
 mod graph;
 mod program;
 mod recording;
+mod resets;
 mod run;
 mod sensitivity;
 mod sliding;
@@ -58,7 +61,7 @@ mod text;
 mod zeros;
 
 pub use compiled::Compiled;
-pub use family::{Accumulation, RuleOrder, SystemFamily};
+pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep, outcome_name};

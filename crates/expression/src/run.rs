@@ -2,18 +2,20 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
 use stickslip_number::Number;
 use stickslip_solver::dynamic::{DynamicStart, ReadableDynamic};
 use stickslip_solver::{Guard, InvalidValue, Options, Schedule, Times};
 
+use crate::continuation::Continuation;
 use crate::program::Program;
+use crate::resets::Resets;
 use crate::system::Next;
 
 /// A system that can run.
 #[derive(Clone, Debug)]
 pub struct Runnable {
     pub(crate) modes: Vec<Mode>,
+    pub(crate) slides: Vec<Continuation>,
     /// The times of each rule of each mode.
     pub(crate) ticks: Vec<Vec<Ticks>>,
     pub(crate) first: usize,
@@ -52,23 +54,6 @@ pub(crate) struct Reaction {
 pub(crate) struct Rest {
     pub(crate) next: usize,
     pub(crate) resets: Resets,
-}
-
-/// New values of components.
-#[derive(Clone, Debug)]
-pub(crate) struct Resets {
-    pub(crate) changed: Arc<[usize]>,
-    pub(crate) values: Program,
-}
-
-impl Resets {
-    fn apply(&self, s: f64, y: &mut [f64]) {
-        let mut values: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.changed.len());
-        self.values.run(s, y, &mut values);
-        for (&component, value) in self.changed.iter().zip(values) {
-            y[component] = value;
-        }
-    }
 }
 
 #[derive(Clone, Debug)]
@@ -114,7 +99,17 @@ impl Runnable {
             }
             self.state = state.to_vec();
         }
-        Ok(self)
+        Ok(self.on_sides())
+    }
+
+    /// The same system, starting on the sides of surfaces where its state is.
+    pub(crate) fn on_sides(mut self) -> Self {
+        // A part of a slide that was decided stays.
+        let slide = self.slides.iter().find(|slide| slide.first == self.first);
+        if let Some(slide) = slide {
+            self.first = slide.start(self.start, &self.state);
+        }
+        self
     }
 
     /// The same system with a relative and an absolute tolerance for each of its first components,
@@ -189,8 +184,12 @@ impl ReadableDynamic for Runnable {
         }
     }
     fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &[f64]) -> f64 {
+        let reaction = &self.modes[mode].reactions[guard];
+        if let Next::Slide { slide, guard } = reaction.next {
+            return self.slides[slide].condition(mode, guard, &reaction.resets, (s, y));
+        }
         let mut condition = [f64::NAN];
-        self.modes[mode].reactions[guard].condition.run(s, y, &mut condition);
+        reaction.condition.run(s, y, &mut condition);
         condition[0]
     }
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
@@ -201,6 +200,9 @@ impl ReadableDynamic for Runnable {
             Next::Branch(_, above, below) => {
                 let condition = ReadableDynamic::transition_condition(self, mode, guard, s, y);
                 if condition >= 0.0 { above } else { below }
+            }
+            Next::Slide { slide, guard } => {
+                return self.slides[slide].next(mode, guard, &reaction.resets, (s, y));
             }
         };
         reaction.resets.apply(s, y);

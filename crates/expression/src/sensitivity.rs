@@ -113,6 +113,12 @@ impl System {
             let expected = "one of those that the system has";
             return Err(InvalidValue::new(what, value, expected).into());
         }
+        if !self.slides.is_empty() {
+            let s = compiled.with(parameters)?.start().s;
+            let reason =
+                "what follows on several surfaces, or on those of functions, is no formula";
+            return Err(SensitivityError::Jump { s, reason });
+        }
         let end_moves = end.is_none();
         let end = end.unwrap_or(compiled.with(parameters)?.end());
         let branched = self.branched();
@@ -310,6 +316,8 @@ impl<'a> Extended<'a> {
                         .map(|next| self.graph().substituted(slopes(next)[place], &after));
                     self.graph().select(condition, above, below)
                 }
+                // Systems with slides are refused.
+                Next::Slide { .. } => self.graph().constant(f64::NAN),
             })
             .collect();
         let mut changes = Vec::new();

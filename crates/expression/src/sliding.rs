@@ -8,9 +8,9 @@
 //!
 //! All of these are formulas. Therefore whatever works on systems as data works on sliding:
 //! printing, derivatives, atlases. On several surfaces the next mode is the solution of a small
-//! complementarity problem, which is not a formula; `stickslip_solver::sliding` solves it.
+//! complementarity problem, which is not a formula; see `several`.
 //!
-//! A mode that slides becomes five ordinary ones:
+//! A mode that slides along one surface becomes five ordinary ones:
 //!
 //! | mode | until | then |
 //! |---|---|---|
@@ -22,6 +22,8 @@
 //! The last two start from a zero of h and of its rate, which rounding would hide. So the state is
 //! moved onto the surface where they are entered, along f₁ − f₂.
 
+pub(crate) mod several;
+
 use stickslip_solver::Direction;
 use thiserror::Error;
 
@@ -29,11 +31,11 @@ use crate::graph::{Binary, Formula, Unary};
 use crate::system::{Mode, Next, Rule, System, Trigger};
 
 /// The places of the modes that take the place of one that slides, from the first.
-const ABOVE: usize = 0;
-const BELOW: usize = 1;
-const SLIDING: usize = 2;
-const ABOVE_RELEASED: usize = 3;
-const BELOW_RELEASED: usize = 4;
+pub(crate) const ABOVE: usize = 0;
+pub(crate) const BELOW: usize = 1;
+pub(crate) const SLIDING: usize = 2;
+pub(crate) const ABOVE_RELEASED: usize = 3;
+pub(crate) const BELOW_RELEASED: usize = 4;
 const PARTS: [&str; 5] = ["above", "below", "sliding", "above_released", "below_released"];
 
 /// Why a mode cannot slide.
@@ -54,10 +56,21 @@ pub enum NotSliding {
     /// A rule chooses between modes of which one slides.
     #[error("a rule of mode `{0}` chooses by `if`; expected modes that do not slide behind it")]
     Branch(String),
+    /// There are more surfaces than can be decided.
+    #[error(
+        "mode `{0}` slides along too many surfaces; expected 4 at most, or fewer in many modes"
+    )]
+    TooMany(String),
     /// Events accumulate, and the mode that follows slides.
     #[error("a rule of mode `{0}` comes to rest in a mode that slides; expected another mode")]
     Rest(String),
 }
+
+/// The largest number of surfaces of a mode.
+const MOST: usize = 4;
+
+/// Several surfaces make many modes, of which so many are enough.
+const MOST_MODES: usize = 20_000;
 
 /// The formulas of one side of a surface.
 struct Side {
@@ -87,41 +100,93 @@ impl System {
     ///
     /// # Errors
     /// [`NotSliding`].
-    pub fn sliding(mut self, surfaces: &[Option<Formula>]) -> Result<Self, NotSliding> {
-        let surface = |mode: usize| surfaces.get(mode).copied().flatten();
+    pub fn sliding(self, surfaces: &[Vec<Formula>]) -> Result<Self, NotSliding> {
+        self.slid(surfaces, None)
+    }
+
+    /// As [`Self::sliding`], for a system whose modes all have the same surfaces, with these names.
+    /// In every mode, each surface has two rules with its name before those of the mode: where it
+    /// is reached, or left upwards, and where it is left downwards. A run that starts on surfaces
+    /// goes on from there without an event.
+    ///
+    /// # Errors
+    /// [`NotSliding`].
+    pub fn sliding_on(self, surfaces: &[Formula], names: &[String]) -> Result<Self, NotSliding> {
+        let all = vec![surfaces.to_vec(); self.modes.len()];
+        self.slid(&all, Some(names))
+    }
+
+    fn slid(
+        mut self,
+        surfaces: &[Vec<Formula>],
+        names: Option<&[String]>,
+    ) -> Result<Self, NotSliding> {
+        let mut unslid = self.clone();
+        unslid.surfaces = surfaces.to_vec();
+        self.surfaces.clear();
         let old = std::mem::take(&mut self.modes);
         // Where each mode, or the first of its parts, is found.
-        let mut places = Vec::with_capacity(old.len());
-        let mut count = 0;
-        for mode in 0..old.len() {
-            places.push(count);
-            count += if surface(mode).is_some() { PARTS.len() } else { 1 };
-        }
-        let targets = Targets { surfaces, places: &places };
+        let (mut places, mut kinds) = (Vec::new(), Vec::new());
+        let (mut count, mut slides) = (0, 0);
         for (place, mode) in old.iter().enumerate() {
-            match surface(place) {
-                None => {
+            places.push(count);
+            let (kind, parts) = match surfaces.get(place).map_or(&[][..], |it| it) {
+                [] => (Kind::Plain, 1),
+                &[surface] if names.is_none() => (Kind::One(surface), PARTS.len()),
+                several if several.len() > MOST || count > MOST_MODES => {
+                    return Err(NotSliding::TooMany(mode.name.clone()));
+                }
+                several => {
+                    slides += 1;
+                    (Kind::Several(slides - 1), several::count(several.len()))
+                }
+            };
+            kinds.push(kind);
+            count += parts;
+        }
+        let targets = Targets { kinds, places };
+        for (place, mode) in old.iter().enumerate() {
+            match targets.kinds[place] {
+                Kind::Plain => {
                     let rules = self.redirected(&targets, place, mode, &mode.rules)?;
                     self.modes.push(Mode { rules, ..mode.clone() });
                 }
-                Some(surface) => self.slide(&targets, place, mode, surface, &old)?,
+                Kind::One(surface) => self.slide(&targets, place, mode, surface, &old)?,
+                Kind::Several(_) => {
+                    self.slide_along(&targets, place, mode, &surfaces[place], names)?;
+                }
             }
         }
-        if let Some(surface) = surface(self.first) {
-            let starts: Vec<_> = self.components.iter().map(|component| component.start).collect();
-            let at_start = self.graph.substituted(surface, &starts);
-            let start = self.start.unwrap_or_else(|| self.graph.constant(0.0));
-            let at_start = self.graph.at_time(at_start, start);
-            self.otherwise = Some((at_start, places[self.first] + BELOW));
+        let mut otherwise = Vec::new();
+        for (formula, mode) in std::mem::take(&mut self.otherwise) {
+            if let Kind::One(surface) = targets.kinds[mode] {
+                let at_start = self.at_start(surface);
+                let both = self.graph.binary(Binary::Max, formula, at_start);
+                otherwise.push((both, targets.places[mode] + BELOW));
+            }
+            otherwise.push((formula, targets.places[mode]));
         }
-        self.first = places.get(self.first).copied().unwrap_or(0);
+        if let Some(&Kind::One(surface)) = targets.kinds.get(self.first) {
+            otherwise.push((self.at_start(surface), targets.places[self.first] + BELOW));
+        }
+        self.unslid = Some(Box::new(unslid));
+        self.otherwise = otherwise;
+        self.first = targets.places.get(self.first).copied().unwrap_or(0);
         Ok(self)
+    }
+
+    /// A formula at the start, as one of parameters.
+    fn at_start(&mut self, formula: Formula) -> Formula {
+        let starts: Vec<_> = self.components.iter().map(|component| component.start).collect();
+        let at_start = self.graph.substituted(formula, &starts);
+        let start = self.start.unwrap_or_else(|| self.graph.constant(0.0));
+        self.graph.at_time(at_start, start)
     }
 
     /// Adds the parts of a mode that slides.
     fn slide(
         &mut self,
-        targets: &Targets<'_>,
+        targets: &Targets,
         place: usize,
         mode: &Mode,
         surface: Formula,
@@ -264,7 +329,7 @@ impl System {
     /// Rules whose modes have other places now.
     fn redirected(
         &mut self,
-        targets: &Targets<'_>,
+        targets: &Targets,
         place: usize,
         mode: &Mode,
         rules: &[Rule],
@@ -272,23 +337,28 @@ impl System {
         let mut redirected = Vec::new();
         for rule in rules {
             let mut rule = rule.clone();
+            let slides = |mode: usize| !matches!(targets.kinds[mode], Kind::Plain);
             rule.next = match rule.next {
-                Next::Stay => match targets.surface(place) {
-                    Some(surface) if self.moves(surface, &rule) => {
+                Next::Stay => match targets.kinds[place] {
+                    Kind::One(surface) if self.moves(surface, &rule) => {
+                        self.entering(targets, place, &rule)
+                    }
+                    Kind::Several(_) if !rule.changes.is_empty() => {
                         self.entering(targets, place, &rule)
                     }
                     _ => Next::Stay,
                 },
                 Next::Mode(next) => self.entering(targets, next, &rule),
                 Next::Branch(condition, one, other) => {
-                    if targets.surface(one).or(targets.surface(other)).is_some() {
+                    if slides(one) || slides(other) {
                         return Err(NotSliding::Branch(mode.name.clone()));
                     }
                     Next::Branch(condition, targets.places[one], targets.places[other])
                 }
+                Next::Slide { .. } => return Err(NotSliding::Branch(mode.name.clone())),
             };
             if let Some(rest) = &mut rule.rest {
-                if targets.surface(rest.next).is_some() {
+                if slides(rest.next) {
                     return Err(NotSliding::Rest(mode.name.clone()));
                 }
                 rest.next = targets.places[rest.next];
@@ -299,14 +369,15 @@ impl System {
     }
 
     /// How a mode is entered behind a rule's changes.
-    fn entering(&mut self, targets: &Targets<'_>, next: usize, rule: &Rule) -> Next {
+    fn entering(&mut self, targets: &Targets, next: usize, rule: &Rule) -> Next {
         let place = targets.places[next];
-        match targets.surface(next) {
-            None => Next::Mode(place),
-            Some(surface) => {
+        match targets.kinds[next] {
+            Kind::Plain => Next::Mode(place),
+            Kind::One(surface) => {
                 let behind = self.behind(surface, rule);
                 Next::Branch(behind, place + ABOVE, place + BELOW)
             }
+            Kind::Several(slide) => Next::Slide { slide, guard: None },
         }
     }
 
@@ -322,14 +393,18 @@ impl System {
     }
 }
 
-/// Where the modes are, and along what they slide.
-struct Targets<'a> {
-    surfaces: &'a [Option<Formula>],
-    places: &'a [usize],
+/// Along what a mode slides.
+#[derive(Clone, Copy)]
+enum Kind {
+    Plain,
+    /// This surface.
+    One(Formula),
+    /// The surfaces of the slide at this place.
+    Several(usize),
 }
 
-impl Targets<'_> {
-    fn surface(&self, mode: usize) -> Option<Formula> {
-        self.surfaces.get(mode).copied().flatten()
-    }
+/// Where the modes are, and along what they slide.
+struct Targets {
+    kinds: Vec<Kind>,
+    places: Vec<usize>,
 }

@@ -19,12 +19,31 @@ pub struct System {
     pub modes: Vec<Mode>,
     /// The first mode.
     pub first: usize,
-    /// A formula of parameters, and the first mode where it is negative.
-    pub otherwise: Option<(Formula, usize)>,
+    /// Formulas of parameters, and the first mode where one is negative, and none before it.
+    pub otherwise: Vec<(Formula, usize)>,
     /// The time at the start.
     pub start: Option<Formula>,
     /// The time at the end.
     pub end: Option<Formula>,
+    /// Modes that slide along several surfaces.
+    pub slides: Vec<Slide>,
+    /// The system before its modes were replaced by those that slide.
+    pub unslid: Option<Box<System>>,
+    /// Along what the modes of such a system slide.
+    pub surfaces: Vec<Vec<Formula>>,
+}
+
+/// Modes that slide along the same surfaces: 5ᵏ for each choice of above, below, sliding, released
+/// above and released below for the first surface, the second one, and so on; and one more, where
+/// the solution does not go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slide {
+    /// The functions whose zeros are the surfaces.
+    pub surfaces: Vec<Formula>,
+    /// The slopes of all components for each choice of sides: above surfaces whose bits are 1.
+    pub corners: Vec<Vec<Formula>>,
+    /// The place of the first mode. A run that starts there starts on the sides where its state is.
+    pub first: usize,
 }
 
 impl System {
@@ -39,7 +58,7 @@ impl System {
                 Trigger::Every { period, phase } => formulas.extend([period, phase]),
             }
         }
-        formulas.extend(self.otherwise.map(|(formula, _)| formula));
+        formulas.extend(self.otherwise.iter().map(|(formula, _)| *formula));
         formulas
     }
 
@@ -49,9 +68,9 @@ impl System {
     /// # Errors
     /// [`InvalidValue`] names the parameter.
     pub fn require_one_first_mode(&self, parameter: usize) -> Result<(), InvalidValue> {
-        let Some((formula, _)) = self.otherwise else { return Ok(()) };
+        let formulas: Vec<Formula> = self.otherwise.iter().map(|it| it.0).collect();
         let decides = u32::try_from(parameter)
-            .is_ok_and(|it| self.graph.reads(&[formula]).contains(&Variable::Parameter(it)));
+            .is_ok_and(|it| self.graph.reads(&formulas).contains(&Variable::Parameter(it)));
         match self.parameters.get(parameter) {
             Some(Parameter { name, .. }) if decides => {
                 let expected = "one on which the first mode does not depend";
@@ -63,7 +82,9 @@ impl System {
 
     /// What changes during a run.
     pub(crate) fn moving_formulas(&self) -> Vec<Formula> {
-        let mut formulas = Vec::new();
+        let mut formulas = self.surfaces.concat();
+        let slides = self.slides.iter();
+        formulas.extend(slides.flat_map(|it| it.corners.iter().chain([&it.surfaces]).flatten()));
         for mode in &self.modes {
             formulas.extend(&mode.slopes);
             for rule in &mode.rules {
@@ -216,15 +237,25 @@ pub enum Next {
     Mode(usize),
     /// In the second mode where the formula is ≥ 0, and in the third where it is negative.
     Branch(Formula, usize, usize),
+    /// In that mode of a slide in which the solution goes on.
+    Slide {
+        /// The place of the slide.
+        slide: usize,
+        /// The surface i that is reached, or left upwards, as 2i, or left downwards, as 2i + 1;
+        /// none if the rule is another one.
+        guard: Option<usize>,
+    },
 }
 
 impl Next {
-    /// The modes to which a rule of the mode at `place` leads.
+    /// The modes to which a rule of the mode at `place` leads, without those of slides.
     pub(crate) fn modes(&self, place: usize) -> impl Iterator<Item = usize> + use<> {
         let modes = match *self {
             Self::Stay => [Some(place), None],
             Self::Mode(next) => [Some(next), None],
             Self::Branch(_, one, other) => [Some(one), Some(other)],
+            // They are many, and entered in any state.
+            Self::Slide { .. } => [None, None],
         };
         modes.into_iter().flatten()
     }

@@ -10,6 +10,7 @@ mod polynomial;
 use stickslip_solver::Direction;
 
 use crate::graph::{Formula, Graph, Variable};
+use crate::sliding::several;
 use crate::system::{Mode, Rule, System, Trigger};
 use polynomial::Polynomial;
 
@@ -45,12 +46,15 @@ impl System {
         let mut graph = self.graph.clone();
         let entries = self.entries(&mut graph);
         let modes = self.modes.iter().enumerate();
+        let slides = self.slide_modes();
         let orders = modes.map(|(place, mode)| {
+            let is_slide = slides.contains(&place);
             let ways = || entries.iter().filter(move |entry| entry.mode == place);
             let order = |rule: &Rule| {
                 // An edge at the start may act there; its side is that of its first derivative.
-                let Trigger::When(guard, Direction::Below) = rule.trigger else {
-                    return rule.from_zero;
+                let guard = match rule.trigger {
+                    Trigger::When(guard, Direction::Below) if !is_slide => guard,
+                    _ => return rule.from_zero,
                 };
                 let orders = ways().map(|entry| zero_order(&mut graph, mode, guard, entry));
                 // A simple zero needs no declaration.
@@ -62,14 +66,24 @@ impl System {
         orders.collect()
     }
 
+    /// The modes of slides.
+    fn slide_modes(&self) -> Vec<usize> {
+        let modes = self.slides.iter().flat_map(|it| {
+            let count = several::count(it.surfaces.len());
+            it.first..it.first + count
+        });
+        modes.collect()
+    }
+
     /// All ways into modes. A rule that stays and changes nothing is none.
     fn entries(&self, graph: &mut Graph) -> Vec<Entry> {
         let starts: Vec<Formula> = self.components.iter().map(|it| it.start).collect();
-        let first = [Some(self.first), self.otherwise.map(|(_, mode)| mode)];
+        let others = self.otherwise.iter().map(|(_, mode)| *mode);
+        let first: Vec<usize> = others.chain([self.first]).collect();
         let time = self.start.unwrap_or_else(|| graph.constant(0.0));
         let held = self.held(graph, &first, &starts);
         let start = |mode| Entry { mode, state: starts.clone(), time: Some(time), zero: None };
-        let mut entries: Vec<Entry> = first.into_iter().flatten().map(start).collect();
+        let mut entries: Vec<Entry> = first.into_iter().map(start).collect();
         for (place, mode) in self.modes.iter().enumerate() {
             if held[place].contains(&Held::Nowhere) {
                 continue;
@@ -81,8 +95,12 @@ impl System {
                     Trigger::When(guard, _) => Some(graph.substituted(guard, &before)),
                     _ => None,
                 };
+                let time = match &rule.trigger {
+                    Trigger::At(times) if times.len() == 1 => Some(times[0]),
+                    _ => None,
+                };
                 for mode in rule.next.modes(place).filter(|_| !rule.stays_as_it_is()) {
-                    entries.push(Entry { mode, state: state.clone(), time: None, zero });
+                    entries.push(Entry { mode, state: state.clone(), time, zero });
                 }
                 if let Some(rest) = &rule.rest {
                     let state = behind(graph, &state, &rest.changes);
@@ -94,15 +112,14 @@ impl System {
     }
 
     /// What is known of the components in each mode.
-    fn held(
-        &self,
-        graph: &mut Graph,
-        first: &[Option<usize>; 2],
-        starts: &[Formula],
-    ) -> Vec<Vec<Held>> {
+    fn held(&self, graph: &mut Graph, first: &[usize], starts: &[Formula]) -> Vec<Vec<Held>> {
         let mut held = vec![vec![Held::Nowhere; self.components.len()]; self.modes.len()];
-        let mut open: Vec<usize> = Vec::new();
-        for mode in first.iter().copied().flatten() {
+        // The modes of slides are entered in any state.
+        let mut open = self.slide_modes();
+        for &mode in &open {
+            held[mode].fill(Held::Free);
+        }
+        for &mode in first {
             self.enter(graph, &mut held[mode], mode, starts);
             open.push(mode);
         }

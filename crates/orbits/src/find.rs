@@ -46,10 +46,15 @@ impl Orbits {
     /// The orbits of a system.
     ///
     /// # Errors
-    /// [`InvalidValue`] if the parts of the system do not fit together, or if its equations jump
-    /// within a mode, where derivatives of a smooth flow do not exist.
+    /// [`InvalidValue`] if the parts of the system do not fit together, if its equations jump within
+    /// a mode, where derivatives of a smooth flow do not exist, or if what follows an event is no
+    /// formula.
     pub fn new(system: &System) -> Result<Self, InvalidValue> {
         let compiled = system.compile()?;
+        let accepted = system.slides.is_empty();
+        let found =
+            GivenValue::Phrase("slides along several surfaces, or those of functions".into());
+        InvalidValue::check("the system", found, "modes with one surface at most", accepted)?;
         let expected = "modes, or `sliding on`, in place of `if`, `sign` and `floor` in equations";
         let accepted = !system.branches();
         let found = GivenValue::Phrase("has equations that jump within a mode".into());

@@ -62,6 +62,8 @@ pub(crate) fn modes_after(rule: &Rule, mode: usize) -> (usize, usize) {
         Next::Stay => (mode, mode),
         Next::Mode(next) => (next, next),
         Next::Branch(_, above, below) => (above, below),
+        // Systems with several surfaces are refused.
+        Next::Slide { .. } => (mode, mode),
     }
 }
 

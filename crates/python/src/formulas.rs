@@ -72,6 +72,15 @@ impl FormulaSystem {
         System::parse(text).map(Self::of).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
+    /// The system of a text whose modes all slide along the same surfaces, with these names.
+    #[staticmethod]
+    fn sliding(text: &str, surfaces: Vec<String>) -> PyResult<Self> {
+        let read = Self::parse(text)?.system;
+        let unslid = read.unslid.map_or_else(System::default, |it| *it);
+        let along = unslid.surfaces.first().cloned().unwrap_or_default();
+        unslid.sliding_on(&along, &surfaces).map(Self::of).map_err(bad_input)
+    }
+
     fn text(&self) -> String {
         self.system.text()
     }

@@ -154,17 +154,21 @@ impl Tape {
     }
 
     /// A system of formulas of this tape: names of parameters; the first mode, the time and the
-    /// state at the start; and modes with slopes and rules. Only rules change the `held` last
-    /// components, which have these names.
+    /// state at the start, and what chooses another first mode where it is negative; and modes with
+    /// slopes and rules. Only rules change the `held` last components, which have these names. All
+    /// modes slide along surfaces with names.
     fn system(
         &self,
         parameters: Vec<String>,
-        start: (usize, f64, Vec<u32>),
+        start: (usize, f64, Vec<u32>, Option<(u32, usize)>),
         modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
         held: Vec<String>,
+        surfaces: Vec<(String, u32)>,
     ) -> PyResult<FormulaSystem> {
         let mut graph = self.graph().clone();
-        let (first, time, start) = start;
+        let (first, time, start, otherwise) = start;
+        let otherwise = otherwise.map(|(formula, mode)| Ok((known(&graph, formula)?, mode)));
+        let otherwise = otherwise.into_iter().collect::<PyResult<_>>()?;
         let start = all_known(&graph, &start)?;
         let n = start.len().saturating_sub(held.len());
         let component = |(place, &start): (usize, &Formula)| match place.checked_sub(n) {
@@ -174,6 +178,8 @@ impl Tape {
         let components = start.iter().enumerate().map(component).collect();
         let parameter = |name| Parameter { name, value: 0.0, range: None };
         let parameters = parameters.into_iter().map(parameter).collect();
+        let (names, surfaces): (Vec<_>, Vec<_>) = surfaces.into_iter().unzip();
+        let surfaces = all_known(&graph, &surfaces)?;
         let begin = Some(graph.constant(time));
         let sizes = (modes.len(), start.len());
         let mut read = Vec::new();
@@ -192,9 +198,15 @@ impl Tape {
             components,
             modes: read,
             first,
+            otherwise,
             start: begin,
             end,
             ..System::default()
+        };
+        let system = if surfaces.is_empty() {
+            system
+        } else {
+            system.sliding_on(&surfaces, &names).map_err(bad_input)?
         };
         Ok(FormulaSystem::of(system))
     }
@@ -262,7 +274,7 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
     let (one, other) = match next {
         Next::Branch(_, above, below) => (above, below),
         Next::Mode(mode) => (mode, mode),
-        Next::Stay => (0, 0),
+        Next::Stay | Next::Slide { .. } => (0, 0),
     };
     if one.max(other) >= modes {
         return Err(bad_input(format!("there is no mode {}", one.max(other))));

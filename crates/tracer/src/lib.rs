@@ -84,6 +84,7 @@
 //! - `window`: points and windows of the parameter plane
 //! - `family`: what is traced
 //! - `hybrid`: hybrid systems as families
+//! - `accumulation`: how many events count where they accumulate
 //! - `curve`: what a trace returns
 //! - `cubic`: curves between nodes
 //! - `options`: options and errors of a trace
@@ -99,6 +100,7 @@
 //! - `document`: atlases of any family, written and read back (feature `serde`)
 //! - `stack`: atlases over a third parameter, and where their structure changes
 
+mod accumulation;
 mod atlas;
 pub mod conditions;
 mod cubic;
@@ -122,6 +124,7 @@ mod tracing;
 mod watch;
 mod window;
 
+pub use accumulation::Accumulation;
 pub use atlas::{Atlas, AtlasOf, AtlasOptions};
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};

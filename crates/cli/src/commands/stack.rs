@@ -138,7 +138,9 @@ fn runs(plane: &SystemPlane, arguments: &StackArguments) -> Result<(), Failure> 
     let options = StackOptions { atlas, ..StackOptions::default() };
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
-    let family = |value| plane.family.with(third, value);
+    let over: Vec<(usize, f64)> = values.iter().map(|&value| (third, value)).collect();
+    let family = plane.family_of_atlas(arguments.plane.max_events, &over);
+    let family = |value| family.with(third, value);
     let made = threads.with_steps(|report| {
         Stack::watched(family, &plane.window, values, &options, InParallel, Watch::from(report))
     })?;

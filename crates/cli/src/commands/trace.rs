@@ -179,7 +179,7 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
     let options = plane.atlas_options(*tolerance)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
-    let family = plane.family_of_atlas(arguments.plane.max_events);
+    let family = plane.family_of_atlas(arguments.plane.max_events, &[]);
     let atlas = threads.with_steps(|report| {
         let surveyor = Surveyor { options, executor: InParallel, watch: Watch::from(report) };
         surveyor.atlas(&family, &plane.window)

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_expression::{Accumulation, Runnable, System, SystemFamily};
+use stickslip_expression::{Runnable, System, SystemFamily};
 use stickslip_files::input::{number, source};
 use stickslip_plane::Range;
 use stickslip_solver::Options;
-use stickslip_tracer::{AtlasOptions, Point, RunNames, Window};
+use stickslip_tracer::{Accumulation, AtlasOptions, Point, RunNames, Window};
 
 use super::method::{atol, rtol};
 use crate::error::Failure;
@@ -212,11 +212,18 @@ impl SystemPlane {
         }))
     }
 
-    /// The family of an atlas. If events accumulate in some runs, and `most` does not say how many
-    /// count, so few count that there are boundaries with an end; standard error says so.
-    pub fn family_of_atlas(&self, most: Option<u32>) -> SystemFamily {
+    /// The family of an atlas, or of those with these values of a third parameter. If events
+    /// accumulate in some runs, and `most` does not say how many count, so few count that there are
+    /// boundaries with an end; standard error says so.
+    pub fn family_of_atlas(&self, most: Option<u32>, over: &[(usize, f64)]) -> SystemFamily {
         let family = self.family.clone();
-        match self.family.accumulation(&self.window).filter(|_| most.is_none()) {
+        if most.is_some() {
+            return family;
+        }
+        let with = over.iter().map(|&(third, value)| family.with(third, value));
+        let members = with.chain(over.is_empty().then(|| family.clone()));
+        let seen = members.filter_map(|member| member.accumulation(&self.window));
+        match seen.reduce(|one, other| one.or_more(Some(other))) {
             Some(Accumulation { events, runs, of }) => {
                 say(format_args!(
                     "events accumulate in {runs} of {of} runs on a grid: runs are told apart up to \

@@ -3,13 +3,27 @@
 use stickslip_solver::InvalidValue;
 
 use crate::graph::{Formula, Variable};
+use crate::sliding::several::count;
 use crate::system::{Next, System};
 
 /// Refuses a system whose parts do not fit together.
 pub(super) fn require(system: &System) -> Result<(), InvalidValue> {
     let (n, modes) = (system.components.len(), system.modes.len());
-    let otherwise = system.otherwise.map_or(0, |(_, mode)| mode);
-    require_below(modes, system.first.max(otherwise), "the first mode")?;
+    let first = system.otherwise.iter().map(|(_, mode)| *mode).chain([system.first]);
+    require_below(modes, first.max().unwrap_or(0), "the first mode")?;
+    for slide in &system.slides {
+        let (k, last) = (slide.surfaces.len(), |k| slide.first + count(k) - 1);
+        require_below(5, k, "the number of surfaces")?;
+        require_below(modes, last(k), "the last mode of a slide")?;
+        let corners = slide.corners.len();
+        if corners != 1 << k || slide.corners.iter().any(|slopes| slopes.len() != n) {
+            return broken(
+                "the number of fields of a slide",
+                corners,
+                "one for each choice of sides",
+            );
+        }
+    }
     for mode in &system.modes {
         if mode.slopes.len() != n {
             return broken("the number of slopes", mode.slopes.len(), "one for each component");
@@ -19,6 +33,12 @@ pub(super) fn require(system: &System) -> Result<(), InvalidValue> {
                 Next::Stay => (0, 0),
                 Next::Mode(mode) => (mode, mode),
                 Next::Branch(_, above, below) => (above, below),
+                Next::Slide { slide, guard } => {
+                    require_below(system.slides.len(), slide, "the slide that follows a rule")?;
+                    let guards = 2 * system.slides[slide].surfaces.len();
+                    require_below(guards, guard.unwrap_or(0), "the guard of a surface")?;
+                    (0, 0)
+                }
             };
             require_below(modes, one.max(other), "the mode that follows a rule")?;
             let rest = rule.rest.as_ref();

@@ -3,7 +3,7 @@
 use super::reader::{RESERVED, Reader};
 use super::tokens::Token;
 use super::{TextError, names};
-use crate::graph::{Binary, Formula, Unary, Variable};
+use crate::graph::{Binary, Formula, Node, Unary, Variable};
 
 /// How deep parentheses, signs and branches may be nested.
 const DEEPEST: usize = 200;
@@ -155,6 +155,7 @@ impl Reader<'_> {
 
     /// Where both conditions hold, or one of them.
     fn joint(&mut self, one: Truth, other: Truth, function: Binary) -> Truth {
+        let [one, other] = [one, other].map(|truth| self.off_limit(truth));
         if let (Truth::NotNegative(a), Truth::NotNegative(b)) = (one, other) {
             let opposite = if function == Binary::Max { Binary::Min } else { Binary::Max };
             return Truth::NotNegative(self.system.graph.binary(opposite, a, b));
@@ -175,9 +176,59 @@ impl Reader<'_> {
         }
     }
 
+    /// The same condition of a rule on a number that is never 0, if it stands still in the mode, as
+    /// what only rules change: it may stay on the limit, where a guard decides nothing.
+    fn off_limit(&mut self, truth: Truth) -> Truth {
+        let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
+        let graph = &self.system.graph;
+        let is_off = |it: Formula| match graph.node(it) {
+            Node::Select(_, below, inner) => {
+                matches!(graph.node(inner), Node::Select(_, above, _) if above == below)
+            }
+            _ => false,
+        };
+        match graph.node(formula) {
+            Node::Unary(Unary::Neg, inner) if is_off(inner) => return truth,
+            _ if is_off(formula) => return truth,
+            _ => {}
+        }
+        let reads = self.system.graph.reads(&[formula]);
+        let components = || reads.iter().filter(|it| matches!(it, Variable::Component(_)));
+        let stays = |it: &Variable| match *it {
+            Variable::Time => false,
+            Variable::Component(place) => {
+                let slope = self.slopes[place as usize];
+                slope.and_then(|slope| self.system.graph.value(slope)) == Some(0.0)
+            }
+            Variable::Parameter(_) => true,
+        };
+        if !self.in_rule || !reads.iter().all(stays) || components().next().is_none() {
+            return truth;
+        }
+        let graph = &mut self.system.graph;
+        // What rounding makes of a difference is 0.
+        let parts = match graph.node(formula) {
+            Node::Binary(Binary::Sub, a, b) => [a, b],
+            _ => [formula, formula],
+        };
+        let [a, b] = parts.map(|part| graph.unary(Unary::Abs, part));
+        let [one, slight, least] = [1.0, 1e-14, 1e-290].map(|x| graph.constant(x));
+        let size = graph.binary(Binary::Add, a, b);
+        let size = graph.binary(Binary::Mul, size, slight);
+        let room = graph.binary(Binary::Add, size, least);
+        let negative = graph.unary(Unary::Neg, formula);
+        let [above, below] = [formula, negative].map(|it| graph.binary(Binary::Sub, it, room));
+        let not_below = graph.select(above, formula, one);
+        let formula = graph.select(below, formula, not_below);
+        match truth {
+            Truth::Negative(_) => Truth::Negative(formula),
+            Truth::NotNegative(_) => Truth::NotNegative(formula),
+        }
+    }
+
     /// A number that becomes negative where the condition begins to hold.
     pub(super) fn guard_of(&mut self, truth: Truth) -> Formula {
-        match truth {
+        match self.off_limit(truth) {
             Truth::Negative(formula) => formula,
             Truth::NotNegative(formula) => self.system.graph.unary(Unary::Neg, formula),
         }

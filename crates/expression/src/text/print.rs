@@ -51,7 +51,11 @@ impl System {
     /// from it, so that runs are the same bit for bit. Names that no text can have are changed.
     #[must_use]
     pub fn text(&self) -> String {
-        Printer::new(&self.readable()).print()
+        match &self.unslid {
+            // Modes without formulas between them, or a list of choices at the start, have no text.
+            Some(unslid) if !self.slides.is_empty() || self.otherwise.len() > 1 => unslid.text(),
+            _ => Printer::new(&self.readable()).print(),
+        }
     }
 }
 
@@ -245,8 +249,11 @@ impl<'a> Printer<'a> {
         if !self.named.is_empty() {
             write!(text, "\n{}", self.named)?;
         }
-        for mode in &system.modes {
+        for (place, mode) in system.modes.iter().enumerate() {
             writeln!(text, "\nmode {}", mode.name)?;
+            for &surface in system.surfaces.get(place).into_iter().flatten() {
+                writeln!(text, "  sliding on {} = 0", sum(surface))?;
+            }
             for (component, &slope) in system.components.iter().zip(&mode.slopes) {
                 if !component.discrete {
                     writeln!(text, "  {}' = {}", component.name, of(slope))?;
@@ -258,8 +265,8 @@ impl<'a> Printer<'a> {
         }
         writeln!(text)?;
         if let Some(first) = system.modes.get(system.first) {
-            match system.otherwise {
-                Some((formula, other)) => {
+            match system.otherwise.first() {
+                Some(&(formula, other)) => {
                     let (condition, other) = (sum(formula), &system.modes[other].name);
                     write!(text, "start if {condition} >= 0 in {} else {other}", first.name)?;
                 }
@@ -309,7 +316,8 @@ impl<'a> Printer<'a> {
         }
         let name = |mode: usize| &self.system.modes[mode].name;
         match rule.next {
-            Next::Stay => {}
+            // With slides, the text is that of the system before.
+            Next::Stay | Next::Slide { .. } => {}
             Next::Mode(mode) => write!(text, " -> {}", name(mode))?,
             Next::Branch(condition, above, below) => {
                 let (condition, above, below) = (sum(condition), name(above), name(below));

@@ -32,8 +32,10 @@ pub(super) struct Reader<'a> {
     pub(super) formulas: HashMap<&'a str, Formula>,
     /// The derivatives of components, in the mode that is read.
     pub(super) slopes: Vec<Option<Formula>>,
-    /// Along what each mode slides, and the token that says so.
-    pub(super) surfaces: Vec<Option<(Formula, usize)>>,
+    /// Whether a rule is read.
+    pub(super) in_rule: bool,
+    /// Along what each mode slides, and the tokens that say so.
+    pub(super) surfaces: Vec<Vec<(Formula, usize)>>,
     /// Formulas above the modes that have another value in each, because they contain derivatives
     /// along the flow.
     pub(super) by_mode: HashMap<&'a str, Statement>,

@@ -6,7 +6,7 @@ use super::formula::{Truth, is_function};
 use super::reader::{RESERVED, Reader, Statement};
 use super::tokens::{Token, tokens};
 use super::{TextError, names};
-use crate::graph::{Binary, Formula, Variable};
+use crate::graph::{Binary, Formula, Unary, Variable};
 use crate::system::{Component, Mode, Parameter, Rule, System};
 
 /// The slopes of all modes together have at most as many entries.
@@ -49,6 +49,7 @@ impl System {
             system: Self::default(),
             formulas: HashMap::new(),
             slopes: Vec::new(),
+            in_rule: false,
             surfaces: Vec::new(),
             by_mode: HashMap::new(),
             components: HashMap::new(),
@@ -132,12 +133,12 @@ impl<'a> Reader<'a> {
             self.next = statement.start;
             self.bound()?;
         }
-        if self.surfaces.iter().all(Option::is_none) {
+        let Some(first) = self.surfaces.iter().flatten().map(|it| it.1).next() else {
             return Ok(self.system);
-        }
-        let surfaces: Vec<_> = self.surfaces.iter().map(|it| it.map(|(it, _)| it)).collect();
+        };
+        let formulas = |it: &Vec<(Formula, usize)>| it.iter().map(|it| it.0).collect();
+        let surfaces: Vec<Vec<Formula>> = self.surfaces.iter().map(formulas).collect();
         let sliding = std::mem::take(&mut self.system).sliding(&surfaces);
-        let first = self.surfaces.iter().flatten().map(|it| it.1).next().unwrap_or(0);
         sliding.map_err(|wrong| self.error_at(first, wrong.to_string()))
     }
 
@@ -251,7 +252,7 @@ impl<'a> Reader<'a> {
         }
         // What is the same in all modes is read once.
         let (mut equations, mut rules, mut after_rule) = (Vec::new(), Vec::new(), false);
-        let mut surface = None;
+        let mut surfaces = Vec::new();
         for statement in shared {
             match self.kind(&statement)? {
                 Kind::Name(name) if self.depends_on_mode(&statement) => {
@@ -259,8 +260,7 @@ impl<'a> Reader<'a> {
                     self.by_mode.insert(name, statement);
                 }
                 Kind::Slope(_) if self.depends_on_mode(&statement) => equations.push(statement),
-                Kind::Surface if surface.is_none() => surface = Some(statement),
-                Kind::Surface => return Err(self.two_surfaces()),
+                Kind::Surface => surfaces.push(statement),
                 Kind::Change | Kind::Rest if !after_rule => {
                     return Err(self.error("expected a rule (`when`, `at`) above this".to_owned()));
                 }
@@ -281,7 +281,7 @@ impl<'a> Reader<'a> {
             self.slopes.clone_from(&common);
             let is_surface = |it: &Statement| self.tokens[it.start].token == Token::Name("sliding");
             if !section.statements.iter().any(is_surface) {
-                section.statements.extend(surface.clone());
+                section.statements.extend(surfaces.clone());
             }
             self.mode(&section, &equations, &rules)?;
         }
@@ -321,7 +321,7 @@ impl<'a> Reader<'a> {
         shared: &[Statement],
     ) -> Result<(), TextError> {
         let mut own = HashSet::new();
-        let mut surface = None;
+        let mut surfaces = Vec::new();
         let (mut local, mut rules) = (Vec::new(), shared.to_vec());
         let mut after_rule = false;
         for statement in &section.statements {
@@ -337,8 +337,7 @@ impl<'a> Reader<'a> {
                         return Err(self.error_at(at, message));
                     }
                 }
-                Kind::Surface if surface.is_none() => surface = Some(self.surface()?),
-                Kind::Surface => return Err(self.two_surfaces()),
+                Kind::Surface => self.surface(&mut surfaces)?,
                 Kind::Change | Kind::Rest if !after_rule => {
                     return Err(self.error("expected a rule (`when`, `at`) above this".to_owned()));
                 }
@@ -358,6 +357,7 @@ impl<'a> Reader<'a> {
             }
         }
         let mut read = Vec::new();
+        self.in_rule = true;
         for statement in rules {
             self.next = statement.start;
             if let Token::Name("when" | "at" | "every") = self.peek() {
@@ -371,6 +371,7 @@ impl<'a> Reader<'a> {
                 self.change(rule)?;
             }
         }
+        self.in_rule = false;
         read.iter_mut().for_each(Rule::note_once);
         if self.system.modes.is_empty() {
             // Mistakes in formulas that no mode uses.
@@ -390,33 +391,39 @@ impl<'a> Reader<'a> {
         }
         let slopes = self.slopes.iter().copied().flatten().collect();
         self.system.modes.push(Mode { name: section.name.to_owned(), slopes, rules: read });
-        self.surfaces.push(surface);
+        self.surfaces.push(surfaces);
         for name in local.into_iter().chain(self.by_mode.keys().copied()) {
             self.formulas.remove(name);
         }
         Ok(())
     }
 
-    /// `sliding on v = belt`
-    fn surface(&mut self) -> Result<(Formula, usize), TextError> {
-        let at = self.next;
+    /// `sliding on v = belt, w = belt`
+    fn surface(&mut self, surfaces: &mut Vec<(Formula, usize)>) -> Result<(), TextError> {
         self.next += 1;
         self.expect_word("on")?;
-        let left = self.number()?;
-        self.expect("=")?;
-        let right = self.number()?;
-        self.expect_end()?;
-        let surface = self.system.graph.binary(Binary::Sub, left, right);
-        if self.system.graph.reads(&[surface]).iter().all(|it| matches!(it, Variable::Parameter(_)))
-        {
-            let message = "the surface is made of numbers alone; expected one with a state";
+        loop {
+            let at = self.next;
+            let left = self.number()?;
+            self.expect("=")?;
+            let right = self.number()?;
+            let graph = &mut self.system.graph;
+            let surface = graph.binary(Binary::Sub, left, right);
+            let opposite = graph.unary(Unary::Neg, surface);
+            let reads = graph.reads(&[surface]);
+            let message = if reads.iter().all(|it| matches!(it, Variable::Parameter(_))) {
+                "the surface is made of numbers alone; expected one with a state"
+            } else if surfaces.iter().any(|(known, _)| [surface, opposite].contains(known)) {
+                "the mode slides along this surface already"
+            } else {
+                surfaces.push((surface, at));
+                if !self.takes(",") {
+                    return self.expect_end();
+                }
+                continue;
+            };
             return Err(self.error_at(at, message.to_owned()));
         }
-        Ok((surface, at))
-    }
-
-    fn two_surfaces(&self) -> TextError {
-        self.error("a mode slides along one surface; expected one `sliding on`".to_owned())
     }
 
     /// `start in mode at 0`, `start if condition in one else other`, `end = 10`.
@@ -439,11 +446,11 @@ impl<'a> Reader<'a> {
                 let other = self.target()?;
                 let formula = match condition {
                     Truth::NotNegative(formula) => {
-                        self.system.otherwise = Some((formula, other));
+                        self.system.otherwise = vec![(formula, other)];
                         formula
                     }
                     Truth::Negative(formula) => {
-                        self.system.otherwise = Some((formula, self.system.first));
+                        self.system.otherwise = vec![(formula, self.system.first)];
                         self.system.first = other;
                         formula
                     }

@@ -70,7 +70,7 @@ fn values<T: Number>(graph: &Graph, t: T, y: &[T], p: &[T]) -> Vec<T> {
             Node::Unary(function, a) => function.of(at(a)),
             Node::Binary(function, a, b) => function.of(at(a), at(b)),
             Node::Power(a, n) => at(a).powi(n),
-            Node::RealPower(a, n) => at(a).powf(f64::from_bits(n)),
+            Node::RealPower(a, n) => Node::power_of(at(a), f64::from_bits(n)),
             Node::Select(a, b, c) => at(a).select(at(b), at(c)),
         });
     }

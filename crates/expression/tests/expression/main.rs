@@ -7,5 +7,6 @@ mod formulas;
 mod mistakes;
 mod sensitivities;
 mod sliding;
+mod surfaces;
 mod systems;
 mod tables;

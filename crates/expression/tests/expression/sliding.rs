@@ -1,9 +1,10 @@
 //! Modes that slide along a surface, and runs that go on behind an accumulation.
 
-use stickslip_expression::{By, InvalidValue, Recording, System, SystemFamily};
+use stickslip_expression::{By, Recording, System, SystemFamily};
 use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
 use stickslip_solver::sliding::{SampledFilippov, Side, TwoFields};
 use stickslip_solver::{Dop853, EmbeddedPair, Options, Outcome};
+use stickslip_tracer::{Family, Point};
 
 const BELT: &str = "parameter belt = 0.5, friction = 0.8\nstate x = -0.3, v = belt\n\
                     x' = v\nv' = -x - friction*sign(v - belt)\n\
@@ -73,9 +74,20 @@ fn a_run_starts_on_either_side_of_a_surface() {
         let found = run(&belt, &[speed, 0.8]);
         assert_eq!(modes(&belt, &found)[0], first);
     }
+    // In a plane of parameters the side is an event, whose condition has a margin.
     let family = SystemFamily::new(&belt, [0, 1], &belt.values(), None, Options::default());
-    let expected = "one on which the first mode does not depend";
-    assert_eq!(family.err(), Some(InvalidValue::new("parameter", "belt", expected)));
+    let family = family.expect("a family");
+    let margins = |belt: f64| family.free_run(&Point::new(belt, 0.8)).expect("a run").margins;
+    assert!(margins(0.9).iter().any(|(_, value)| (value - 0.3).abs() < 1e-15));
+    assert!(margins(0.2).iter().any(|(_, value)| (value + 0.4).abs() < 1e-15));
+    // A start by a condition goes to the right side, too.
+    let text = BELT.replace("mode move", "mode rest\n  v' = 0\nmode move");
+    let text = format!("{text}\nstart if belt > 0.4 in move else rest");
+    let system = System::parse(&text.replace(", v = belt", ", v = belt - 0.1")).expect("a system");
+    for (speed, first) in [(0.5, "move_below"), (0.3, "rest")] {
+        assert_eq!(modes(&system, &run(&system, &[speed, 0.8]))[0], first);
+    }
+    assert_eq!(System::parse(&system.text()).expect("a system").text(), system.text());
 }
 
 #[test]
@@ -155,7 +167,6 @@ fn what_cannot_slide_is_refused() {
     for (text, expected) in [
         ("mode a\n  sliding on x = 2\n", "no equation of mode `a` changes"),
         ("mode a\n  sliding on x = 2\n  v' = -sign(x - 2)\n", "moves no differently"),
-        ("mode a\n  sliding on v = 0\n  sliding on x = 0\n", "slides along one surface"),
         ("mode a\n  sliding on 1 = 0\n", "made of numbers alone"),
         ("mode a\n  sliding v = 0\n", "expected"),
         ("mode a\n  sliding on v = 0\n  when x < 0 if v > 0 -> a else -> b\nmode b\n", "chooses"),

@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
-use stickslip_expression::{Runnable, System};
+use stickslip_expression::{Runnable, System, SystemFamily};
 use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
 use stickslip_solver::{EmbeddedPair, Options};
+use stickslip_tracer::{Family, Itinerary, Point};
 
 fn run(runnable: &Runnable) -> (DynamicRun<usize>, Vec<DynamicSwitch<usize>>) {
     let found = runnable.record(EmbeddedPair::Dop853, runnable.end(), &Options::default());
@@ -258,4 +259,58 @@ fn names_that_no_text_can_have_are_changed_in_it() {
     assert_eq!([&again.components[0].name, &again.components[1].name], ["sin_", "_2_y_"]);
     let [one, other] = [system, again].map(|it| run(&it.with(&[2.0, 3.0]).expect("parameters")));
     assert_eq!(one, other);
+}
+
+#[test]
+fn the_first_mode_of_a_family_has_a_margin() {
+    // Above w = v/2 the ball rises, and else it falls before the end.
+    let text = "parameter v = 1, w = 1\nstate x = 1, u = 0\nx' = u\nu' = -1\n\
+                when x < 0 \"floor\"\n  x := 9\nmode up\n  u' = w\nmode down\n\
+                start if 2*w >= v in up else down\nend = 2";
+    let system = System::parse(text).expect("a system");
+    let family = SystemFamily::new(&system, [0, 1], &system.values(), None, Options::default());
+    let family = family.expect("a family");
+    let start = family.rules().iter().position(|name| name == "start").expect("a rule");
+    let (above, below) = (Point::new(1.0, 0.51), Point::new(1.0, 0.49));
+    assert_eq!(family.label(&above), Ok(Itinerary::Fires(vec![start])));
+    assert_eq!(family.label(&below), Ok(Itinerary::Fires(vec![start, 1 - start])));
+    let margins = family.free_run(&above).expect("a run").margins;
+    let at = |margin: &_, w: f64| family.margin(&Point::new(1.0, w), margin).expect("a margin");
+    let zero = margins.iter().find(|(margin, _)| at(margin, 0.5) == Some(0.0));
+    let (margin, value) = zero.expect("the condition vanishes at its limit");
+    assert!((value - 0.02).abs() < 1e-15);
+    assert!((at(margin, 0.49).expect("a value") + 0.02).abs() < 1e-15);
+    // Rules at given times would not count at the start.
+    let clock = text.replace("when x", "at 1\nwhen x");
+    let system = System::parse(&clock).expect("a system");
+    let refused = SystemFamily::new(&system, [0, 1], &system.values(), None, Options::default());
+    assert!(refused.expect_err("clocks").to_string().contains("first mode"));
+}
+
+#[test]
+fn a_count_may_stay_at_the_limit_of_a_condition() {
+    let ends = |rule: &str| {
+        let text = format!(
+            "state x = 1\ndiscrete k = 0\nx' = -1\nwhen x < 0 \"hit\"\n  x := 1\n  k := k + 1\n\
+             {rule}\nend = 10"
+        );
+        runs(&text).0.s
+    };
+    for (rule, s) in [
+        ("when k >= 3 -> end", 3.0),
+        ("when k > 2 -> end", 3.0),
+        ("when not (k < 3) -> end", 3.0),
+        ("when 3 <= k or x > 2 -> end", 3.0),
+        ("when x < 0.5 and k >= 2 -> end", 2.5),
+        ("when x < 0.5 and k > 2 -> end", 3.5),
+        ("when x < 0.5 and k < 3\n  k := k + 1", 10.0),
+    ] {
+        assert!((ends(rule) - s).abs() < 1e-13, "{rule}: {}", ends(rule));
+    }
+    // So may what stands still in a mode.
+    let still = "state x = 0\nmode a\n  x' = 1\n  when x > 1 -> b\n    x := 1\nmode b\n  x' = 0\n  \
+                 when x < 1 -> a\n  when x >= 1 and t > 2 -> end\nend = 3";
+    assert!((runs(still).0.s - 2.0).abs() < 1e-13);
+    let text = parsed(still).text();
+    assert_eq!(parsed(&text).text(), text);
 }

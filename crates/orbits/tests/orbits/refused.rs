@@ -30,6 +30,8 @@ fn errors_say_what_and_where() {
     assert!(message(decay, &many).contains("10000 is out of range; expected 1 to 600"));
     let jumps = "state x = 1, v = 0\nx' = v\nv' = if x > 0 then -1 else 1\nend = 1";
     assert!(message(jumps, &["a"]).contains("equations that jump within a mode"));
+    let two = "state x = 1, y = 1\nx' = -sign(x)\ny' = -sign(y)\nsliding on x = 0, y = 0\nend = 1";
+    assert!(message(two, &["arrives 1"]).contains("expected modes with one surface at most"));
     let modes = "state x = 0\nmode a\n  x' = 1\n  when x > 1 \"up\" -> b\nmode b\n  x' = -1\n  \
                  when x < 0 \"down\" -> a\nstart in a\nend = 1";
     assert!(message(modes, &["up"]).contains("ends in mode b; expected one that ends in mode a"));

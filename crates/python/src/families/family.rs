@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_expression::{RuleOrder, SystemFamily};
 use stickslip_tracer::{
-    AtlasOptions, Family, Monitor, Point, RunNames, TraceOptions, Window, follow,
+    Accumulation, AtlasOptions, Family, Monitor, Point, RunNames, TraceOptions, Window, follow,
 };
 
 use crate::failure::{bad_input, failed};
@@ -50,7 +50,8 @@ impl HybridFamily {
         description: Description,
     ) -> PyResult<Self> {
         let blueprint = Blueprint::new(py, system, &args, start, end, &settings)?;
-        Ok(Self { made: Made::Functions(Arc::new(blueprint)), names: description.into() })
+        let events = blueprint.options.max_switches;
+        Ok(Self { made: Made::Functions(Arc::new(blueprint), events), names: description.into() })
     }
 
     /// The family of a system of formulas over two of its parameters, with the values of all, the
@@ -81,6 +82,30 @@ impl HybridFamily {
     /// The names of the guards.
     fn guards(&self) -> Vec<String> {
         self.names.guards.clone()
+    }
+
+    /// Whether events accumulate in runs of a window: the events up to which they should be told
+    /// apart, and in how many of how many runs.
+    fn accumulation(
+        &self,
+        py: Python<'_>,
+        window: ((f64, f64), (f64, f64)),
+    ) -> PyResult<Option<(usize, usize, usize)>> {
+        let _level = Level::enter()?;
+        let made = self.made.up_to(Accumulation::EVENTS);
+        let runner = Runner::new(&made, Arc::new(Trouble::default()), !made.is_compiled());
+        let window = window_of(window);
+        let work = || Accumulation::seen(&runner, &window);
+        let found = if made.is_compiled() { py.detach(work) } else { work() };
+        if let Some(error) = runner.trouble().take_failure() {
+            return Err(error);
+        }
+        Ok(found.map(|it| (it.events, it.runs, it.of)))
+    }
+
+    /// The same family, whose runs are told apart up to so many events.
+    fn up_to(&self, events: usize) -> Self {
+        Self { made: self.made.up_to(events), names: self.names.clone() }
     }
 
     /// Traces the boundaries between two values of each parameter. Returns the atlas, and an

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use pyo3::prelude::*;
 use stickslip_expression::SystemFamily;
-use stickslip_solver::Dop853;
 use stickslip_solver::margin::Margin;
+use stickslip_solver::{Dop853, Options};
 use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
 use crate::failure::bad_input;
@@ -18,8 +18,8 @@ use crate::parallel::PAUSE;
 /// What the runs of a family are made of.
 #[derive(Clone)]
 pub enum Made {
-    /// Functions of Python, or compiled ones.
-    Functions(Arc<Blueprint>),
+    /// Functions of Python, or compiled ones, and the events up to which runs are told apart.
+    Functions(Arc<Blueprint>, usize),
     /// Formulas.
     Formulas(Arc<SystemFamily>),
 }
@@ -28,8 +28,18 @@ impl Made {
     /// Whether no run needs the interpreter.
     pub fn is_compiled(&self) -> bool {
         match self {
-            Self::Functions(blueprint) => blueprint.is_compiled(),
+            Self::Functions(blueprint, _) => blueprint.is_compiled(),
             Self::Formulas(_) => true,
+        }
+    }
+
+    /// The same runs, told apart up to so many events.
+    pub fn up_to(&self, events: usize) -> Self {
+        match self {
+            Self::Functions(blueprint, _) => Self::Functions(blueprint.clone(), events),
+            Self::Formulas(family) => {
+                Self::Formulas(Arc::new(SystemFamily::clone(family).up_to(events)))
+            }
         }
     }
 }
@@ -63,9 +73,9 @@ impl Runner {
     /// that has to do it.
     pub fn new(made: &Made, trouble: Arc<Trouble>, looks: bool) -> Self {
         let runs = match made {
-            Made::Functions(blueprint) => {
+            Made::Functions(blueprint, max_switches) => {
                 let problem = Members { blueprint: blueprint.clone(), trouble: trouble.clone() };
-                let options = blueprint.options;
+                let options = Options { max_switches: *max_switches, ..blueprint.options };
                 Runs::Functions(DynamicFamily { problem, method: Dop853, options })
             }
             Made::Formulas(family) => Runs::Formulas(family.clone()),

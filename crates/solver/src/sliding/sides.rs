@@ -101,6 +101,23 @@ pub struct SlidingMode<Mode> {
 }
 
 impl<Mode> SlidingMode<Mode> {
+    /// A mode with these sides of up to 4 surfaces, from which a transition leads on: for systems
+    /// that keep modes of their own.
+    pub fn at(own: Mode, sides: &[Side]) -> Self {
+        let mut all = [Side::Above; MOST];
+        all.iter_mut().zip(sides).for_each(|(all, side)| *all = *side);
+        Self { own, surfaces: Sides::new(sides.len().min(MOST), all) }
+    }
+
+    /// Whether the state has just left this surface, whose function starts from a double zero: the
+    /// rate of the function is zero, too.
+    #[must_use]
+    pub fn is_released(&self, surface: usize) -> bool {
+        let released = |zeros: &[u8; 2]| zeros[0] > 1;
+        self.sides().get(surface).is_some_and(|&side| side != Side::Sliding)
+            && self.surfaces.zeros.get(surface).is_some_and(released)
+    }
+
     /// The side of each surface.
     #[must_use]
     pub fn sides(&self) -> &[Side] {
