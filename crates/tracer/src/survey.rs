@@ -88,11 +88,8 @@ impl<T> Survey<T> {
 /// The atlas of a draft.
 pub type DraftedOf<D> = Atlas<<D as Draft>::Label, <D as Draft>::Margin>;
 
-/// An atlas that was traced by margins, with their zero sets.
-type ByMargins<'f, 'w, D> = (DraftedOf<D>, Lines<'f, 'w, <D as Draft>::Family>);
-
 /// An atlas, with the zero sets if it was traced by margins.
-type Found<'f, 'w, D> = (DraftedOf<D>, Option<Lines<'f, 'w, <D as Draft>::Family>>);
+type Finished<'f, 'w, D> = (DraftedOf<D>, Option<Lines<'f, 'w, <D as Draft>::Family>>);
 
 /// Why there is no atlas of a draft.
 type DraftError<D> = TraceError<<<D as Draft>::Family as Family>::Error>;
@@ -218,7 +215,7 @@ impl<'w, E> Surveyor<'w, E> {
         draft: &'f D,
         tracer: &mut Tracer<'_, D::Family>,
         begun: Survey<DraftedOf<D>>,
-    ) -> Result<Found<'f, 'w, D>, DraftError<D>>
+    ) -> Result<Finished<'f, 'w, D>, DraftError<D>>
     where
         E: Executor<D::Family>,
     {
@@ -231,7 +228,7 @@ impl<'w, E> Surveyor<'w, E> {
         let mut surveyed = false;
         if finished && !atlas.agrees() {
             match self.by_margins(draft, &tracer.window()) {
-                Ok(Some((other, lines))) if other.agrees() => return Ok((other, Some(lines))),
+                Ok(Some(other)) if other.0.agrees() => return Ok(other),
                 // Runs may fail where the first way had nothing to look for.
                 Ok(Some(_)) | Err(_) => {}
                 Ok(None) => surveyed = true,
@@ -260,7 +257,7 @@ impl<'w, E> Surveyor<'w, E> {
         &self,
         draft: &'f D,
         window: &Window,
-    ) -> Result<Option<ByMargins<'f, 'w, D>>, DraftError<D>>
+    ) -> Result<Option<Finished<'f, 'w, D>>, DraftError<D>>
     where
         E: Executor<D::Family>,
     {
@@ -276,11 +273,11 @@ impl<'w, E> Surveyor<'w, E> {
             }
             let brackets = atlas.verification.brackets();
             if brackets.is_empty() || round >= self.options.rounds {
-                return Ok(Some((atlas, lines)));
+                return Ok(Some((atlas, Some(lines))));
             }
             match lines.look(&brackets)? {
                 None => return Ok(None),
-                Some(false) => return Ok(Some((atlas, lines))),
+                Some(false) => return Ok(Some((atlas, Some(lines)))),
                 Some(true) => round += 1,
             }
         }

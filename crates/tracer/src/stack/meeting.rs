@@ -153,7 +153,7 @@ fn is_passage<F: Family>(
     if !conditions.are_boundaries() {
         return true;
     }
-    let mut told = [0, 0];
+    let mut agreements = [0, 0];
     for third in 0..3 {
         let pair = [(third + 1) % 3, (third + 2) % 3];
         let [in_x, in_y, in_z] =
@@ -181,11 +181,11 @@ fn is_passage<F: Family>(
             }
             if let Some(value) = found {
                 let part = value / expected;
-                told[usize::from((0.1..10.0).contains(&part))] += 1;
+                agreements[usize::from((0.1..10.0).contains(&part))] += 1;
             }
         }
     }
-    told[0] <= told[1]
+    agreements[0] <= agreements[1]
 }
 
 /// The conditions for a touch of those two of three margins whose boundaries are nearly parallel.

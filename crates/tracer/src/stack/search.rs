@@ -29,7 +29,7 @@ use crate::watch::{Progress, Watch};
 use crate::window::Window;
 
 /// A change, and the structure behind it.
-type Found<F> = (Change<<F as Family>::Label>, Structure<<F as Family>::Label>);
+type LocatedChange<F> = (Change<<F as Family>::Label>, Structure<<F as Family>::Label>);
 
 type Searched<T, F> = Result<T, TraceError<<F as Family>::Error>>;
 
@@ -67,7 +67,7 @@ pub(super) struct Search<'a, F: Family, At, E> {
     range: [f64; 2],
     count: usize,
     cancelled: Cell<bool>,
-    found: Vec<Found<F>>,
+    found: Vec<LocatedChange<F>>,
     /// The meetings at which the structure does not change.
     tried: Vec<Tried<F::Label>>,
 }
@@ -424,7 +424,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
     /// one change, in doubt. So do brackets that almost touch each other, unless both are solved
     /// for: the structure changes there in steps too small to show whether there is one change or
     /// several.
-    pub fn joined(mut self) -> Vec<Found<F>> {
+    pub fn joined(mut self) -> Vec<LocatedChange<F>> {
         let found = std::mem::take(&mut self.found);
         let is_one = |one: &Change<F::Label>, other: &Change<F::Label>| {
             let [low, high] = other.between;
@@ -432,7 +432,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             let gap = low - one.between[1];
             gap < 0.0 || unsolved && gap <= GAP * self.width(low, high)
         };
-        let mut joined: Vec<Found<F>> = Vec::new();
+        let mut joined: Vec<LocatedChange<F>> = Vec::new();
         for (mut change, behind) in found {
             while let Some((mut last, _)) = joined.pop_if(|(last, _)| is_one(last, &change)) {
                 last.join(change);

@@ -28,7 +28,7 @@ use crate::tracing::network::{NetworkOf, TraceStatistics};
 use crate::tracing::runs::{Runs, Sampled, Traced, checked};
 use crate::tracing::seed::Seed;
 use crate::tracing::tracer::island;
-use crate::tracing::tracer::trace::is_expected;
+use crate::tracing::tracer::trace::{is_expected, polygon};
 use crate::watch::{Progress, Watch};
 use crate::window::{Point, Window};
 
@@ -275,19 +275,12 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
 
     /// Searches on two polygons around a place, unless that was done.
     fn look_around(&mut self, place: &Point) -> Traced<(), F> {
-        const CORNERS: u32 = 8;
         if !self.is_new(place) {
             return Ok(());
         }
         for radius in [self.runs.lengths.around, self.runs.lengths.close] {
-            let corner = |index: u32| {
-                // No corner lies on an axis or a diagonal through the place.
-                let turns = (f64::from(index % CORNERS) + 0.47) / f64::from(CORNERS);
-                let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
-                place + Point::new(cosine, sine) * radius
-            };
-            for index in 0..CORNERS {
-                self.search([corner(index), corner(index + 1)])?;
+            for side in polygon(place, radius, 8, 0.47).windows(2) {
+                self.search([side[0], side[1]])?;
             }
         }
         Ok(())

@@ -36,7 +36,7 @@ pub(crate) fn locate<F: Family>(
     Search { alone, touches }: Search,
 ) -> Traced<Option<Special<F::Margin>>, F> {
     for sure in [true, false] {
-        let mut margins = track.rivals(from, beyond, sure);
+        let mut margins = track.other_margins(from, beyond, sure);
         if sure && let Some(beyond) = beyond {
             margins.extend(wedge(track, beyond)?);
         }
@@ -116,14 +116,14 @@ fn among<F: Family>(
 }
 
 /// A place, its largest error, and the margin that vanishes there besides the branch's margin.
-type Met<Margin> = (Point, f64, Margin);
+type CommonZero<Margin> = (Point, f64, Margin);
 
 /// The first of these places behind which the branch does not have its labels.
 fn first<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
-    mut places: Vec<Met<F::Margin>>,
-) -> Traced<Option<Met<F::Margin>>, F> {
+    mut places: Vec<CommonZero<F::Margin>>,
+) -> Traced<Option<CommonZero<F::Margin>>, F> {
     let progress = |point: &Point| (point - from.node.point).dot(&from.node.tangent);
     // Where a crossing has a larger error, the two margins are almost multiples of each other.
     places.retain(|(_, off, _)| *off <= track.runs.lengths.close);

@@ -30,7 +30,7 @@ pub(crate) fn touch<F: Family>(
         (middle.node.point - first.node.point).norm(),
         (next.node.point - middle.node.point).norm(),
     ];
-    for margin in track.rivals(middle, None, true) {
+    for margin in track.other_margins(middle, None, true) {
         let [Some(a), Some(b), Some(c)] =
             [first, middle, next].map(|foothold| value_beside(foothold, &margin))
         else {

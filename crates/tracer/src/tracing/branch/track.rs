@@ -116,7 +116,7 @@ impl<F: Family> Track<'_, '_, F> {
 
     /// The margins in the free runs at both ends of a step, except the margin that is followed, in
     /// order: either the margins on whose zeros the label is sure to change, or the others.
-    pub fn rivals(
+    pub fn other_margins(
         &self,
         from: &FootholdOf<F>,
         beyond: Option<&FootholdOf<F>>,

@@ -42,7 +42,7 @@ impl<F: Family> Lines<'_, '_, F> {
         let solved = match beside {
             Some((other, place, distance)) => {
                 let reach = (100.0 * distance).max(lengths.touch).min(lengths.close);
-                self.met(index, end, other, place, reach)?
+                self.common_zero(index, end, other, place, reach)?
             }
             None => None,
         };
@@ -80,7 +80,7 @@ impl<F: Family> Lines<'_, '_, F> {
 
     /// The place where the margin of a line that ends vanishes together with that of another line
     /// that passes by, which is a smooth margin.
-    fn met(
+    fn common_zero(
         &self,
         index: usize,
         end: usize,

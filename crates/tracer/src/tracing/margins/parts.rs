@@ -78,11 +78,8 @@ impl<F: Family> Lines<'_, '_, F> {
             }
             let sides = self.sides(part, &mut doubts)?;
             if sides[0] != sides[1] {
-                all.push((
-                    part.length(&self.all[part.line]),
-                    all.len(),
-                    Seen { part: *part, sides },
-                ));
+                let length = part.length(&self.all[part.line]);
+                all.push((length, all.len(), Seen { part: *part, sides }));
             }
         }
         // Shorter parts may run along longer ones.

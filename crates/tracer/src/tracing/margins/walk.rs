@@ -35,12 +35,11 @@ impl<F: Family> Lines<'_, '_, F> {
         let mut here = from.clone();
         for _ in 0..STEPS {
             let way = Way { runs: &self.runs, ends: [here.0, to.0] };
-            let length = way.length();
-            let zeros = way.zeros(&here, to)?;
-            let Some(first) = zeros.first().map(|zero| zero.0) else { break };
             // Zeros closer together belong to one change.
-            let near = 0.3 * self.runs.lengths.half / length;
-            for (_, point, margin) in zeros.iter().take_while(|zero| zero.0 <= first + near) {
+            let near = 0.3 * self.runs.lengths.half / way.length();
+            let zeros = way.zeros(&here, to, near)?;
+            let Some(first) = zeros.first().map(|zero| zero.0) else { break };
+            for (_, point, margin) in &zeros {
                 self.begin(point, margin, &(to.0 - here.0))?;
             }
             let next = first + near;
@@ -117,6 +116,9 @@ struct Way<'r, 'f, F: Family> {
 /// A value at a place of a way.
 type Height = (f64, f64);
 
+/// A zero on a way: its place, its point, and the margin that vanishes there.
+type Zero<F> = (f64, Point, <F as Family>::Margin);
+
 impl<F: Family> Way<'_, '_, F> {
     fn point(&self, place: f64) -> Point {
         self.ends[0].lerp(&self.ends[1], place)
@@ -134,43 +136,48 @@ impl<F: Family> Way<'_, '_, F> {
         self.runs.moved(&self.point(place), margin)
     }
 
-    /// The zeros of the margins of the first run, in order, with their places.
-    fn zeros(
-        &self,
-        here: &Sampled<F>,
-        there: &Sampled<F>,
-    ) -> Traced<Vec<(f64, Point, F::Margin)>, F> {
+    /// The first zero of the margins of the first run, and others up to `near` behind it, in order.
+    ///
+    /// Behind the first zero the run has another itinerary, and what vanishes there is asked of the
+    /// next run. So most margins are only asked whether they vanish before the first zero so far.
+    fn zeros(&self, here: &Sampled<F>, there: &Sampled<F>, near: f64) -> Traced<Vec<Zero<F>>, F> {
         let differ = here.1.label != there.1.label;
-        let mut zeros = Vec::new();
-        for (margin, value) in &here.1.margins {
-            if *value == 0.0 || !(differ || self.runs.is_sure(margin)) {
-                continue;
-            }
+        let vanishes = |(margin, value): &&(F::Margin, f64)| {
+            *value != 0.0 && (differ || self.runs.is_sure(margin))
+        };
+        let mut margins: Vec<&(F::Margin, f64)> = here.1.margins.iter().filter(vanishes).collect();
+        // The smallest ones are likely to vanish first.
+        margins.sort_by(|one, other| one.1.abs().total_cmp(&other.1.abs()));
+        let mut zeros: Vec<Zero<F>> = Vec::new();
+        let mut end = 1.0;
+        for (margin, value) in margins {
             let listed = there.1.margins.iter().find(|(other, _)| other == margin);
-            let listed = listed.map(|(_, value)| *value);
-            if let Some((place, name)) = self.zero(margin, *value, listed)? {
+            let last = match listed {
+                Some((_, last)) if zeros.is_empty() => Some(*last),
+                _ => self.value(end, margin)?,
+            };
+            if let Some((place, name)) = self.zero(margin, *value, (end, last))? {
                 zeros.push((place, self.point(place), name));
+                end = end.min(place + near);
             }
         }
+        zeros.retain(|zero| zero.0 <= end);
         zeros.sort_by(|one, other| one.0.total_cmp(&other.0));
         Ok(zeros)
     }
 
-    /// A zero of a margin with this value at the start, and its name there.
+    /// A zero of a margin with this value at the start, before the place `end`, where it has the
+    /// value `last` if it exists there. With its name at the zero.
     fn zero(
         &self,
         margin: &F::Margin,
         value: f64,
-        listed: Option<f64>,
+        (end, last): (f64, Option<f64>),
     ) -> Traced<Option<(f64, F::Margin)>, F> {
         let mut name = margin.clone();
-        let last = match listed {
-            None => self.value(1.0, &name)?,
-            listed => listed,
-        };
         let bracket = match last {
-            Some(last) => Some([(0.0, value), (1.0, last)]),
-            None => self.bracket(value, &mut name)?,
+            Some(last) => Some([(0.0, value), (end, last)]),
+            None => self.bracket(value, end, &mut name)?,
         };
         match bracket {
             Some([low, high]) if low.1 * high.1 <= 0.0 => self.narrowed(low, high, name),
@@ -180,12 +187,17 @@ impl<F: Family> Way<'_, '_, F> {
 
     /// Two places between which a margin vanishes that ceases to exist on the way, by the secant
     /// method with steps that are a little too long.
-    fn bracket(&self, value: f64, name: &mut F::Margin) -> Traced<Option<[Height; 2]>, F> {
+    fn bracket(
+        &self,
+        value: f64,
+        mut end: f64,
+        name: &mut F::Margin,
+    ) -> Traced<Option<[Height; 2]>, F> {
         const ROUNDS: usize = 30;
-        /// A margin that would need so many times the way does not vanish on it.
-        const FARTHEST: f64 = 100.0;
-        let (mut low, mut height) = (0.0, value);
-        let (mut end, mut step) = (1.0, 0.05_f64);
+        /// A margin that would need so many times the rest of the way does not vanish on it. One
+        /// that falls to zero at the end as a root of a root needs four times the rest.
+        const FARTHEST: f64 = 4.0;
+        let (mut low, mut height, mut step) = (0.0, value, 0.05 * end);
         for _ in 0..ROUNDS {
             let next = (low + step).min(0.5 * (low + end));
             if next - low < 1e-9 {
@@ -200,7 +212,7 @@ impl<F: Family> Way<'_, '_, F> {
                     let need = -here * (next - low) / (here - height);
                     *name = self.moved(next, name)?;
                     (low, height) = (next, here);
-                    if !(need > 0.0 && need < FARTHEST) {
+                    if !(need > 0.0 && need < FARTHEST * (end - low)) {
                         return Ok(None);
                     }
                     step = (1.1 * need).min(0.5);

@@ -274,17 +274,7 @@ impl<'f, F: Family> Tracer<'f, F> {
 
     /// Searches on a circle.
     fn circle(&mut self, centre: &Point, radius: f64) -> Traced<(), F> {
-        const CORNERS: u32 = 16;
-        let places: Vec<Point> = (0..=CORNERS)
-            .map(|i| {
-                // The polygon is turned, so that no corner lies on an axis or a diagonal through
-                // the vertex.
-                let turns = (f64::from(i % CORNERS) + 0.3) / f64::from(CORNERS);
-                let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
-                centre + Point::new(cosine, sine) * radius
-            })
-            .collect();
-        self.walk(&places)
+        self.walk(&polygon(centre, radius, 16, 0.3))
     }
 
     /// Scans the sides of a polygon.
@@ -298,6 +288,17 @@ impl<'f, F: Family> Tracer<'f, F> {
         }
         Ok(())
     }
+}
+
+/// The corners of a polygon around a place; the last one is the first. The polygon is turned by a
+/// part of a side, so that no corner lies on an axis or a diagonal through the place.
+pub(crate) fn polygon(centre: &Point, radius: f64, corners: u32, turned: f64) -> Vec<Point> {
+    let corner = |index: u32| {
+        let turns = (f64::from(index % corners) + turned) / f64::from(corners);
+        let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
+        centre + Point::new(cosine, sine) * radius
+    };
+    (0..=corners).map(corner).collect()
 }
 
 /// Whether a run between two others is as they suggest: it has the same label, and margins near the
