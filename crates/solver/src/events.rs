@@ -47,6 +47,7 @@ pub(crate) mod sidestep;
 pub(crate) mod status;
 
 pub(crate) use along_step::{dense_output, repeated_step};
+pub(crate) use arrival::HERE;
 pub(crate) use event::{Crossed, Event, Found, Note, only};
 pub(crate) use examination::{Examination, values_on};
 pub(crate) use first_guard::{UNSEEN, all_clearly_away};

@@ -214,10 +214,7 @@ where
 {
     let from = (start.mode, start.s, &start.state);
     let followed = followed::<M, _>(&Fixed(system), from, end, options, exits)?;
-    Ok(followed.map(|Followed { exits, run }| {
-        let End { outcome, s, mode, state, decided, statistics } = run;
-        Followed { exits, run: Run { outcome, s, mode, state, decided, statistics } }
-    }))
+    Ok(followed.map(|Followed { exits, run }| Followed { exits, run: run.into() }))
 }
 
 /// As [`follow`], for a system whose dimension is known at run time.
@@ -238,19 +235,13 @@ where
 {
     on_fixed_states!(system, start, |padded, from, n| {
         let followed = follow(method, &padded, from, end, options, exits)?;
-        Ok(followed.map(|Followed { exits, run }| {
-            let Run { outcome, s, mode, state, decided, statistics } = run;
-            let state = state.as_slice()[..n].to_vec();
-            Followed { exits, run: DynamicRun { outcome, s, mode, state, decided, statistics } }
-        }))
+        Ok(followed
+            .map(|Followed { exits, run }| Followed { exits, run: DynamicRun::of_few(run, n) }))
     });
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     let from = (start.mode, start.s, &from);
     let followed = followed::<M, _>(&system, from, end, options, exits)?;
-    Ok(followed.map(|Followed { exits, run }| {
-        let End { outcome, s, mode, state, decided, statistics } = run;
-        Followed { exits, run: DynamicRun { outcome, s, mode, state, decided, statistics } }
-    }))
+    Ok(followed.map(|Followed { exits, run }| Followed { exits, run: run.into() }))
 }
 
 /// The value of `margin`, with its name moved along.

@@ -23,13 +23,30 @@ pub(crate) struct Room<S: System> {
     /// The number of components, and the number of guards of the active mode.
     pub(crate) n: usize,
     pub(crate) guards: usize,
-    states: Vec<S::State>,
-    rows: Vec<PerGuard<S, f64>>,
-    denses: Vec<DenseOf<S::State>>,
-    steps: Vec<StepOf<S::State>>,
+    state: Vec<S::State>,
+    dense: Vec<DenseOf<S::State>>,
+    step: Vec<StepOf<S::State>>,
+    row: Vec<PerGuard<S, f64>>,
     statuses: Vec<PerGuard<S, Status>>,
     beginnings: Vec<PerGuard<S, Beginning>>,
     bools: Vec<PerGuard<S, bool>>,
+}
+
+macro_rules! lends {
+    ($($lend:ident $give:ident: $type:ty = |$n:ident| $new:expr;)*) => {$(
+        #[inline(always)]
+        pub(crate) fn $lend(&mut self) -> $type {
+            let $n = self.n;
+            let kept = if S::State::KEEPS { self.$lend.pop() } else { None };
+            kept.unwrap_or_else(|| $new)
+        }
+        #[inline(always)]
+        pub(crate) fn $give(&mut self, lent: $type) {
+            if S::State::KEEPS {
+                self.$lend.push(lent);
+            }
+        }
+    )*};
 }
 
 macro_rules! lists {
@@ -54,7 +71,13 @@ macro_rules! lists {
 }
 
 impl<S: System> Room<S> {
+    lends! {
+        state give: S::State = |n| S::State::room(n);
+        dense give_dense: DenseOf<S::State> = |n| DenseOf::room(n);
+        step give_step: StepOf<S::State> = |n| StepOf::new(n);
+    }
     lists! {
+        row give_row: f64 = 0.0;
         statuses give_statuses: Status = Status::Clear;
         beginnings give_beginnings: Beginning =
             Beginning { theta: 0.0, value: 0.0, zero_order: 0 };
@@ -62,71 +85,9 @@ impl<S: System> Room<S> {
     }
 
     pub(crate) fn new(n: usize) -> Self {
-        let (states, rows, denses, steps) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (state, dense, step, row) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (statuses, beginnings, bools) = (Vec::new(), Vec::new(), Vec::new());
-        Self { n, guards: 0, states, rows, denses, steps, statuses, beginnings, bools }
-    }
-    #[inline(always)]
-    pub(crate) fn state(&mut self) -> S::State {
-        if S::State::KEEPS {
-            let n = self.n;
-            self.states.pop().unwrap_or_else(|| S::State::room(n))
-        } else {
-            S::State::room(self.n)
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn give(&mut self, lent: S::State) {
-        if S::State::KEEPS {
-            self.states.push(lent);
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn row(&mut self) -> PerGuard<S, f64> {
-        if S::State::KEEPS {
-            let n = self.guards;
-            let mut row = self.rows.pop().unwrap_or_else(|| PerGuard::<S, f64>::of(n, 0.0));
-            row.fit(n, 0.0);
-            row
-        } else {
-            PerGuard::<S, f64>::of(self.guards, 0.0)
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn give_row(&mut self, lent: PerGuard<S, f64>) {
-        if S::State::KEEPS {
-            self.rows.push(lent);
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn dense(&mut self) -> DenseOf<S::State> {
-        if S::State::KEEPS {
-            let n = self.n;
-            self.denses.pop().unwrap_or_else(|| DenseOf::room(n))
-        } else {
-            DenseOf::room(self.n)
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn give_dense(&mut self, lent: DenseOf<S::State>) {
-        if S::State::KEEPS {
-            self.denses.push(lent);
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn step(&mut self) -> StepOf<S::State> {
-        if S::State::KEEPS {
-            let n = self.n;
-            self.steps.pop().unwrap_or_else(|| StepOf::new(n))
-        } else {
-            StepOf::new(self.n)
-        }
-    }
-    #[inline(always)]
-    pub(crate) fn give_step(&mut self, lent: StepOf<S::State>) {
-        if S::State::KEEPS {
-            self.steps.push(lent);
-        }
+        Self { n, guards: 0, state, dense, step, row, statuses, beginnings, bools }
     }
     /// A guard's value.
     #[inline(always)]
@@ -168,8 +129,7 @@ pub(crate) trait System: Sized {
         mode: Self::Mode,
         s: Enclosure,
         y: &PerComponent<Self, Enclosure>,
-        guard: usize,
-    ) -> Enclosure;
+    ) -> PerGuard<Self, Enclosure>;
     fn reads(&self, mode: Self::Mode) -> <Self::Components as Shape>::Read;
     /// The rates of the guards, NaN where they are not known.
     fn guard_rates(
@@ -230,8 +190,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_,
         *values = self.0.guard_values(mode, s, y);
     }
     #[inline(always)]
-    fn enclose(&self, mode: S::Mode, s: Enclosure, y: &[Enclosure; N], guard: usize) -> Enclosure {
-        self.0.enclose_guards(mode, s, y)[guard]
+    fn enclose(&self, mode: S::Mode, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G] {
+        self.0.enclose_guards(mode, s, y)
     }
     #[inline(always)]
     fn reads(&self, _: S::Mode) {}
@@ -290,15 +250,12 @@ fn up_to_last_digit(x: f64) -> Interval {
 }
 
 /// A system whose dimension is known at run time.
-pub(crate) struct Free<'a, S>(
-    pub(crate) &'a S,
-    pub(crate) RefCell<(Vec<Enclosure>, Vec<Enclosure>)>,
-);
+pub(crate) struct Free<'a, S>(pub(crate) &'a S, RefCell<Vec<Enclosure>>);
 
 impl<'a, S> Free<'a, S> {
     /// A system of `n` components.
     pub(crate) fn new(system: &'a S, n: usize) -> Self {
-        Self(system, RefCell::new((vec![Enclosure::ENTIRE; n], Vec::new())))
+        Self(system, RefCell::new(vec![Enclosure::ENTIRE; n]))
     }
 }
 
@@ -320,25 +277,19 @@ impl<S: DynamicSystem> System for Free<'_, S> {
         values.resize(self.0.guards(mode).len(), f64::NAN);
         self.0.guard_values(mode, s, y, values);
     }
-    fn enclose(
-        &self,
-        mode: S::Mode,
-        s: Enclosure,
-        y: &SmallVec<[Enclosure; 8]>,
-        guard: usize,
-    ) -> Enclosure {
-        let (all, values) = &mut *self.1.borrow_mut();
+    fn enclose(&self, mode: S::Mode, s: Enclosure, y: &SmallVec<[Enclosure; 8]>) -> Vec<Enclosure> {
+        let all = &mut *self.1.borrow_mut();
         match self.0.reads(mode) {
             [] => all.copy_from_slice(y),
             reads => reads.iter().zip(y).for_each(|(&place, &y)| all[place] = y),
         }
-        values.resize(self.0.guards(mode).len(), Enclosure::ENTIRE);
-        self.0.enclose_guards(mode, s, all, values);
-        values[guard]
+        let mut values = vec![Enclosure::ENTIRE; self.0.guards(mode).len()];
+        self.0.enclose_guards(mode, s, all, &mut values);
+        values
     }
     fn reads(&self, mode: S::Mode) -> SmallVec<[usize; 8]> {
         match self.0.reads(mode) {
-            [] => (0..self.1.borrow().0.len()).collect(),
+            [] => (0..self.1.borrow().len()).collect(),
             reads => reads.into(),
         }
     }

@@ -10,10 +10,9 @@ fn contacts_of_every_law_have_the_right_switches() {
     let mut numbers = fastrand::Rng::with_seed(41);
     let (mut right, mut near) = (0, 0);
     for (name, law) in laws() {
-        for _ in 0..16 {
-            let contact = random(law, 1e3, &mut numbers);
-            for engine in ENGINES {
-                match judged(engine, contact) {
+        for contact in random(law, 1e3, 16, &mut numbers) {
+            for (engine, verdict) in ENGINES.into_iter().zip(judged(contact)) {
+                match verdict {
                     Verdict::Right => right += 1,
                     Verdict::Near => near += 1,
                     // A damping below the range of the integrators.
@@ -43,8 +42,7 @@ fn the_first_phase_does_not_end_those_that_follow() {
         });
         for contact in [known].into_iter().chain(random) {
             let contact = contact.with_law(law, 0.0).unwrap();
-            for engine in ENGINES {
-                let verdict = judged(engine, contact);
+            for (engine, verdict) in ENGINES.into_iter().zip(judged(contact)) {
                 assert_eq!(verdict, Verdict::Right, "{name}, {}: {contact:?}", engine.name());
             }
         }

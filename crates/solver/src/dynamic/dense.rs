@@ -120,7 +120,16 @@ impl<'a> DynamicDense<'a> {
     /// Writes the state at step fraction `theta` to `state`. If `state` is shorter than the
     /// dimension, only the first components are written; what lies beyond the dimension stays.
     pub fn write(&self, theta: f64, state: &mut [f64]) {
-        self.truncated(theta, self.degree, state);
+        let row = |i: usize| &self.r[i * self.n..(i + 1) * self.n];
+        for (sum, &r) in state.iter_mut().zip(row(self.degree)) {
+            *sum = r;
+        }
+        for i in (0..self.degree).rev() {
+            let factor = factor(i, theta);
+            for (sum, &r) in state.iter_mut().zip(row(i)) {
+                *sum = r + *sum * factor;
+            }
+        }
     }
 
     /// Component `index` of the state at step fraction `theta`, or `None` if there is no such
@@ -139,19 +148,6 @@ impl<'a> DynamicDense<'a> {
     /// The same states, as a step in −s.
     pub(super) fn reversed(&self) -> Self {
         Self { s: 0.0 - self.s, h: -self.h, ..*self }
-    }
-
-    fn truncated(&self, theta: f64, degree: usize, state: &mut [f64]) {
-        let row = |i: usize| &self.r[i * self.n..(i + 1) * self.n];
-        for (sum, &r) in state.iter_mut().zip(row(degree)) {
-            *sum = r;
-        }
-        for i in (0..degree).rev() {
-            let factor = factor(i, theta);
-            for (sum, &r) in state.iter_mut().zip(row(i)) {
-                *sum = r + *sum * factor;
-            }
-        }
     }
 }
 

@@ -40,17 +40,29 @@ where
     on_fixed_states!(system, start, |padded, from, n| {
         let mut observer = Unpadded { observer, n };
         let run = run(method, &padded, from, end, options, &mut observer)?;
-        let Run { outcome, s, mode, state, decided, statistics } = run;
-        let state = state.as_slice()[..n].to_vec();
-        Ok(DynamicRun { outcome, s, mode, state, decided, statistics })
+        Ok(DynamicRun::of_few(run, n))
     });
     let mut watcher =
         DynamicWatcher { observer, simultaneous: Vec::new(), coefficients: Vec::new() };
     let from = (start.mode, start.s, &start.state.to_vec());
     let system = Free::new(system, start.state.len());
-    let run = run_any::<M, _, _>(&system, from, end, options, &mut watcher)?;
-    let End { outcome, s, mode, state, decided, statistics } = run;
-    Ok(DynamicRun { outcome, s, mode, state, decided, statistics })
+    run_any::<M, _, _>(&system, from, end, options, &mut watcher).map(DynamicRun::from)
+}
+
+impl<S: DynamicSystem> From<End<Free<'_, S>>> for DynamicRun<S::Mode> {
+    fn from(end: End<Free<'_, S>>) -> Self {
+        let End { outcome, s, mode, state, decided, statistics } = end;
+        Self { outcome, s, mode, state, decided, statistics }
+    }
+}
+
+impl<Mode> DynamicRun<Mode> {
+    /// A run on fixed states, of which the first `n` components are those of the system.
+    pub(crate) fn of_few<const N: usize>(run: Run<Mode, N>, n: usize) -> Self {
+        let Run { outcome, s, mode, state, decided, statistics } = run;
+        let state = state.as_slice()[..n].to_vec();
+        Self { outcome, s, mode, state, decided, statistics }
+    }
 }
 
 /// An observer of a run, with room for lists.

@@ -169,7 +169,7 @@ impl<S: System, M: Method> AlongStep<'_, S, M> {
     /// Bounds of the guard from bounds of time and state.
     fn enclose(&mut self, (s, y): (Enclosure, PerComponent<S, Enclosure>)) -> Enclosure {
         self.statistics.enclosures += 1;
-        let bounds = self.system.enclose(self.mode, s, &y, self.guard);
+        let bounds = self.system.enclose(self.mode, s, &y)[self.guard];
         if self.sign < 0.0 { -bounds } else { bounds }
     }
 
@@ -251,17 +251,18 @@ pub(crate) struct EnclosedAlongStep<'a, S: System, M> {
 
 impl<S: System, M: Method> Enclosed for EnclosedAlongStep<'_, S, M> {
     fn over(&mut self, low: f64, high: f64) -> Enclosure {
-        let part = self.local.as_ref().unwrap_or(&self.path).part(low, high);
-        self.along.enclose(part.whole())
+        let path = self.local.as_ref().unwrap_or(&self.path);
+        self.along.enclose(path.part(low, high).whole(path))
     }
 
     fn bounds(&mut self, low: f64, high: f64) -> (Enclosure, Enclosure) {
-        let part = self.local.as_ref().unwrap_or(&self.path).part(low, high);
-        let plain = self.along.enclose(part.whole());
+        let path = self.local.as_ref().unwrap_or(&self.path);
+        let part = path.part(low, high);
+        let plain = self.along.enclose(part.whole(path));
         if plain.value.sign() != 0.0 {
             return (plain, plain);
         }
-        let centre = self.along.enclose(part.centre());
+        let centre = self.along.enclose(part.centre(path));
         if !plain.slope.is_bounded() {
             return (plain, centre);
         }
@@ -275,7 +276,7 @@ impl<S: System, M: Method> Enclosed for EnclosedAlongStep<'_, S, M> {
         let read = system.reads(mode);
         let n = S::Components::count(&read, y.y1.size());
         let state = List::made(n, |i| Enclosure::from(y.y1[S::Components::place(&read, i)]));
-        let bounds = system.enclose(mode, s, &state, guard).value;
+        let bounds = system.enclose(mode, s, &state)[guard].value;
         self.along.room.give_step(y);
         Ok((value, if sign < 0.0 { bounds.negated() } else { bounds }))
     }

@@ -14,7 +14,7 @@ const ARRIVES: f64 = 16.0;
 /// The roundings of time that may hide what a guard does.
 const HIDES: f64 = 65536.0;
 /// A guard that acts is not examined again within this many roundings of time.
-const UNSEEN: f64 = 64.0;
+pub(crate) const HERE: f64 = 64.0;
 /// An event this close to the end of its step is the one at the end.
 pub(crate) const SAME: f64 = 1e-6;
 
@@ -25,7 +25,7 @@ impl<S: System> Examination<'_, S> {
         for guard in 0..self.phase.count() {
             let s = step.s + step.h;
             // It has acted within rounding of this place.
-            let here = self.age + step.h <= UNSEEN * self.drift;
+            let here = self.age + step.h <= HERE * self.drift;
             if here && self.phase.zero_by_rounding[guard] {
                 continue;
             }

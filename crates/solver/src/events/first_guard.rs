@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
+use crate::events::by_bounds::Sight;
 use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
@@ -159,6 +160,7 @@ impl<S: System> Examination<'_, S> {
             there: self.room.row(),
             nodes: [(); 6].map(|()| self.room.row()),
             nodes_known: false,
+            sight: None,
             located: SmallVec::new(),
         };
         for (open, status) in search.open.parts_mut().iter_mut().zip(statuses.parts()) {
@@ -291,6 +293,7 @@ impl<S: System> Examination<'_, S> {
             return Ok(Ok(None));
         }
         if !search.nodes_known {
+            search.sight = None;
             self.values_on(&found.step, &mut search.nodes);
             search.nodes_known = true;
         }
@@ -304,7 +307,7 @@ impl<S: System> Examination<'_, S> {
         } else if self.notes_of(guard).next().is_some() {
             Status::Unclear
         } else {
-            self.glance_at::<M>(guard, &found.step, &search.nodes, &mut None)
+            self.glance_at::<M>(guard, &found.step, &search.nodes, &mut search.sight)
         };
         if status == Status::Unclear {
             let step = &mut found.step;
@@ -446,6 +449,8 @@ struct Search<S: System> {
     /// The values at the nodes of the event's step, if they are known.
     nodes: [PerGuard<S, f64>; 6],
     nodes_known: bool,
+    /// What was bounded along the event's step.
+    sight: Option<Sight<S>>,
     /// The crossings that were located, if there are several.
     located: SmallVec<[Located; 2]>,
 }

@@ -9,6 +9,7 @@ use crate::events::along_step::{
     AlongStep, EnclosedAlongStep, dense_output, repeated_step, start_rate,
 };
 use crate::events::arrival::SAME;
+use crate::events::by_bounds::Sight;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_enclosed_sign,
@@ -44,11 +45,11 @@ impl<S: System> Examination<'_, S> {
     ) -> PerGuard<S, Status> {
         let mut confirmed = self.room.bools();
         self.confirmed(step, values, &mut confirmed);
-        let mut path = None;
+        let mut sight = None;
         let mut statuses = self.room.statuses();
         for guard in 0..self.phase.count() {
             statuses[guard] = if confirmed[guard] {
-                self.glance_at::<M>(guard, step, values, &mut path)
+                self.glance_at::<M>(guard, step, values, &mut sight)
             } else if !self.phase.guards[guard].direction().has_values() {
                 Status::Clear
             } else {
@@ -59,22 +60,24 @@ impl<S: System> Examination<'_, S> {
         statuses
     }
 
-    /// What a quick look at a step shows about a guard. The quick `path` is made if it is needed.
+    /// What a quick look at a step shows about a guard. `sight` along the step is made if it is
+    /// needed.
     pub(crate) fn glance_at<M: Method>(
         &mut self,
         guard: usize,
         step: &StepOf<S::State>,
         values: &[PerGuard<S, f64>; 6],
-        path: &mut Option<Path<S::Components>>,
+        sight: &mut Option<Sight<S>>,
     ) -> Status {
         let column = column::<S>(values, guard);
         if !self.phase.guards[guard].direction().has_values() {
             Status::Clear
         } else if S::READABLE && self.has_bounds(guard) {
-            let path = path.get_or_insert_with(|| {
-                Path::quick(step, M::QUICK_ERROR, self.system.reads(self.phase.mode))
+            let sight = sight.get_or_insert_with(|| {
+                let reads = self.system.reads(self.phase.mode);
+                Sight::along(Path::quick(step, M::QUICK_ERROR, reads))
             });
-            self.glance_at_bounds::<M>(guard, &column, path)
+            self.glance_at_bounds::<M>(guard, &column, sight)
         } else {
             self.glance::<M>(guard, &column)
         }

@@ -44,10 +44,9 @@ pub(crate) struct Path<F: Shape> {
 }
 
 /// A path about the middle of a part of the step.
-pub(crate) struct Part<'a, F: Shape> {
-    path: &'a Path<F>,
-    low: f64,
-    high: f64,
+pub(crate) struct Part<F: Shape> {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
     /// The coefficients about the middle.
     terms: [F::Of<f64>; TERMS],
 }
@@ -142,14 +141,14 @@ impl<F: Shape> Path<F> {
     }
 
     /// The part between two step fractions.
-    pub(crate) fn part(&self, low: f64, high: f64) -> Part<'_, F> {
+    pub(crate) fn part(&self, low: f64, high: f64) -> Part<F> {
         let middle = 0.5 * (low + high);
         let terms = match self.kind {
             Kind::Quick => self.about::<{ NODES.len() }>(middle),
             Kind::Dense => self.about::<TERMS>(middle),
             Kind::Local(origin, _) => self.about::<3>(middle - origin),
         };
-        Part { path: self, low, high, terms }
+        Part { low, high, terms }
     }
 
     /// The first `K` coefficients about `middle`. The others are zero.
@@ -193,13 +192,13 @@ impl<F: Shape> Path<F> {
     }
 }
 
-impl<F: Shape> Part<'_, F> {
+impl<F: Shape> Part<F> {
     /// Bounds for the time and the state, with their derivatives by the step fraction.
-    pub(crate) fn whole(&self) -> (Enclosure, F::Of<Enclosure>) {
+    pub(crate) fn whole(&self, path: &Path<F>) -> (Enclosure, F::Of<Enclosure>) {
         let radius = 0.5 * (self.high - self.low);
         let c = &self.terms;
         // The remainders beyond the first derivatives.
-        let n_all = self.path.n;
+        let n_all = path.n;
         let none = || each::<F>(n_all, |_| 0.0);
         let mut remainders = [none(), none(), none()];
         for k in (1..TERMS).rev() {
@@ -216,30 +215,30 @@ impl<F: Shape> Part<'_, F> {
                 }
             }
         }
-        self.around(self.low, self.high, &remainders)
+        self.around(path, (self.low, self.high), &remainders)
     }
 
     /// The same bounds in the middle alone.
-    pub(crate) fn centre(&self) -> (Enclosure, F::Of<Enclosure>) {
+    pub(crate) fn centre(&self, path: &Path<F>) -> (Enclosure, F::Of<Enclosure>) {
         let middle = 0.5 * (self.low + self.high);
-        let none = || each::<F>(self.path.n, |_| 0.0);
-        self.around(middle, middle, &[none(), none(), none()])
+        let none = || each::<F>(path.n, |_| 0.0);
+        self.around(path, (middle, middle), &[none(), none(), none()])
     }
 
     #[inline(always)]
     fn around(
         &self,
-        low: f64,
-        high: f64,
+        path: &Path<F>,
+        (low, high): (f64, f64),
         remainders: &[F::Of<f64>; 3],
     ) -> (Enclosure, F::Of<Enclosure>) {
-        let &Path { s, h, n, .. } = self.path;
+        let &Path { s, h, n, .. } = path;
         let time = Enclosure {
             value: Interval::point(s).plus(Interval::new(low, high).scaled(h)),
             slope: Interval::point(h),
             bend: Interval::ZERO,
         };
-        let band = self.path.band(low, high);
+        let band = path.band(low, high);
         let factors = [1.0, 1.0, 2.0];
         let none = || each::<F>(n, |_| 0.0);
         let (mut lower, mut upper) = ([none(), none(), none()], [none(), none(), none()]);

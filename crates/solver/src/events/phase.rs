@@ -120,11 +120,15 @@ impl<S: System> Phase<S> {
         self.zero_by_rounding[guard] = true;
     }
 
-    /// Goes on after a step, at whose end the guards have these values.
+    /// Goes on after a step, at whose end the guards have these values. Where rounding hides
+    /// whether time has passed since the phase began (`is_here`), guards still stand on the zeros
+    /// that are forgiven.
     #[inline]
-    pub(crate) fn advance(&mut self, values: &PerGuard<S, f64>) {
+    pub(crate) fn advance(&mut self, values: &PerGuard<S, f64>, is_here: impl Fn() -> bool) {
         self.values.set(values);
-        if self.at_zero {
+        if self.at_zero && is_here() {
+            self.zero_orders.parts_mut().fill(0);
+        } else if self.at_zero {
             self.forget_zeros();
         }
         for (largest, value) in self.largest.parts_mut().iter_mut().zip(values.parts()) {

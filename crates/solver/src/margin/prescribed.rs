@@ -422,9 +422,8 @@ impl<S: System> System for Prescribed<'_, S> {
         _: Self::Mode,
         _: Enclosure,
         _: &PerComponent<S, Enclosure>,
-        _: usize,
-    ) -> Enclosure {
-        Enclosure::ENTIRE
+    ) -> PerGuard<S, Enclosure> {
+        List::of(0, Enclosure::ENTIRE)
     }
 
     fn reads(&self, at: Self::Mode) -> <S::Components as Shape>::Read {

@@ -1,8 +1,6 @@
 //! A function that is called at every switch.
 
 use crate::events::Note;
-use crate::hybrid::{Grazing, Pole, Preempted, Rest};
-use crate::method::DenseOf;
 use crate::runs::runner::Watcher;
 use crate::system::System;
 
@@ -28,14 +26,7 @@ impl<S: System, F: FnMut(&Note<S>) -> bool> Watcher<S> for AtSwitches<F> {
     fn on_switch(&mut self, event: &Note<S>) {
         self.stops |= (self.at_switch)(event);
     }
-    fn on_grazing(&mut self, _: &Grazing<S::Mode>) {}
-    fn on_pole(&mut self, _: &Pole<S::Mode>) {}
-    fn on_preempted(&mut self, _: &Preempted<S::Mode>) {}
-    fn on_rest(&mut self, _: &Rest<S::Mode>) {}
-    fn forget(&mut self, _: usize) {}
     fn stops(&self, _: f64) -> bool {
         self.stops
     }
-    fn on_segment(&mut self, _: S::Mode, _: &DenseOf<S::State>) {}
-    fn on_end(&mut self, _: S::Mode, _: f64, _: &S::State) {}
 }

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 
 use crate::error::RunError;
 use crate::events::{
-    Event, Examination, Found, Note, Noticed, Notices, Phase, UNSEEN, all_clearly_away,
+    Event, Examination, Found, HERE, Note, Noticed, Notices, Phase, UNSEEN, all_clearly_away,
     dense_output, values_on,
 };
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics};
@@ -54,15 +54,8 @@ where
 {
     let mut watcher = FixedWatcher(observer);
     let state = &start.state;
-    let run = run_any::<M, _, _>(
-        &Fixed(system),
-        (start.mode, start.s, state),
-        end,
-        options,
-        &mut watcher,
-    )?;
-    let End { outcome, s, mode, state, decided, statistics } = run;
-    Ok(Run { outcome, s, mode, state, decided, statistics })
+    let from = (start.mode, start.s, state);
+    run_any::<M, _, _>(&Fixed(system), from, end, options, &mut watcher).map(Run::from)
 }
 
 /// The end of a run.
@@ -73,6 +66,15 @@ pub(crate) struct End<S: System> {
     pub(crate) state: S::State,
     pub(crate) decided: bool,
     pub(crate) statistics: Statistics,
+}
+
+impl<S: HybridSystem<N, G>, const N: usize, const G: usize> From<End<Fixed<'_, S, N, G>>>
+    for Run<S::Mode, N>
+{
+    fn from(end: End<Fixed<'_, S, N, G>>) -> Self {
+        let End { outcome, s, mode, state, decided, statistics } = end;
+        Self { outcome, s, mode, state, decided, statistics }
+    }
 }
 
 #[inline]
@@ -255,7 +257,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             let away =
                 all_clearly_away(system, phase, scale, step, &values, statistics, room, &mut sure);
             let close = if away && !last {
-                self.phase.advance(&values[5]);
+                self.phase.advance(&values[5], || false);
                 None
             } else {
                 self.look_closely::<M>(h, step, event, (&values, away), last)?
@@ -400,7 +402,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
         if let Some(at_end) = at_end {
             if event.is_none() {
-                self.phase.advance(&at_end);
+                let clock = &self.clock;
+                self.phase.advance(&at_end, || clock.phase + h <= HERE * clock.drift());
             }
             self.room.give_row(at_end);
         }

@@ -9,14 +9,14 @@ use crate::system::{Fixed, System};
 pub(crate) trait Watcher<S: System> {
     const WANTS_SEGMENTS: bool;
     fn on_switch(&mut self, event: &Note<S>);
-    fn on_grazing(&mut self, grazing: &Grazing<S::Mode>);
-    fn on_pole(&mut self, pole: &Pole<S::Mode>);
-    fn on_preempted(&mut self, preempted: &Preempted<S::Mode>);
-    fn on_rest(&mut self, rest: &Rest<S::Mode>);
-    fn forget(&mut self, switches: usize);
+    fn on_grazing(&mut self, _: &Grazing<S::Mode>) {}
+    fn on_pole(&mut self, _: &Pole<S::Mode>) {}
+    fn on_preempted(&mut self, _: &Preempted<S::Mode>) {}
+    fn on_rest(&mut self, _: &Rest<S::Mode>) {}
+    fn forget(&mut self, _switches: usize) {}
     fn stops(&self, s: f64) -> bool;
-    fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<S::State>);
-    fn on_end(&mut self, mode: S::Mode, s: f64, state: &S::State);
+    fn on_segment(&mut self, _: S::Mode, _: &DenseOf<S::State>) {}
+    fn on_end(&mut self, _: S::Mode, _s: f64, _: &S::State) {}
 }
 
 /// An observer of a run of fixed dimension.

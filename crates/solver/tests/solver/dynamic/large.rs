@@ -1,8 +1,10 @@
-//! Many components.
+//! Many components, and many guards.
 
 use allocation_counter::measure;
-use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
-use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Options, StepSize};
+use stickslip_solver::dynamic::{
+    DynamicRun, DynamicStart, DynamicSwitch, ReadableDynamic, run_dynamic,
+};
+use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Number, Options, StepSize};
 
 use super::{Plain, go};
 
@@ -110,4 +112,64 @@ fn steps_without_event_allocate_nothing() {
     assert_eq!(allocations(Dop853, 20), allocations(Dop853, 2000));
     assert_eq!(allocations(Dopri5, 20), allocations(Dopri5, 2000));
     assert!(allocations(Dop853, 20) < 100);
+}
+
+/// Rooms that are heated towards 3 below 1, and cool towards 0 above 2; temperatures, and then
+/// whether they are heated.
+struct Rooms(Vec<Guard>);
+
+impl ReadableDynamic for Rooms {
+    type Mode = ();
+
+    fn field<T: Number>(&self, (): (), _: T, y: &[T], slope: &mut [T]) {
+        let n = y.len() / 2;
+        for room in 0..n {
+            let rate = 1.0 + room as f64 / n as f64;
+            slope[room] = (y[n + room] * 3.0 - y[room]) * rate;
+            slope[n + room] = T::from(0.0);
+        }
+    }
+    fn guards(&self, (): ()) -> &[Guard] {
+        &self.0
+    }
+    fn guard_values<T: Number>(&self, (): (), _: T, y: &[T], values: &mut [T]) {
+        let n = y.len() / 2;
+        for room in 0..n {
+            (values[room], values[n + room]) = (-y[room] + 2.0, y[room] - 1.0);
+        }
+    }
+    fn transition(&self, (): (), guard: usize, _: f64, y: &mut [f64]) {
+        let n = y.len() / 2;
+        y[n + guard % n] = if guard < n { 0.0 } else { 1.0 };
+    }
+}
+
+/// All guards are evaluated and bounded at once, so that the work of an event is linear in their
+/// number. It was quadratic: each guard bounded all.
+#[test]
+fn the_evaluations_of_an_event_do_not_grow_with_the_number_of_guards() {
+    for n in [4, 40, 200] {
+        let rooms = Rooms(vec![Guard::new(Direction::Falling); 2 * n]);
+        let state: Vec<_> = (0..2 * n).map(|i| if i < n { 0.0 } else { 1.0 }).collect();
+        let start = DynamicStart { mode: (), s: 0.0, state: &state };
+        let mut switches: Vec<DynamicSwitch<()>> = Vec::new();
+        let options = Options { max_switches: 10_000, ..Options::with_tolerance(1e-10) };
+        let run = run_dynamic(Dop853, &rooms, start, 3.0, &options, &mut switches).unwrap();
+        let times = (0..n).flat_map(|room| {
+            let rate = 1.0 + room as f64 / n as f64;
+            let switches =
+                (0..20).map(move |k| (3.0_f64.ln() + 2.0_f64.ln() * f64::from(k)) / rate);
+            switches.filter(|time| *time < 3.0)
+        });
+        let mut times: Vec<_> = times.collect();
+        times.sort_by(f64::total_cmp);
+        assert_eq!(switches.len(), times.len());
+        for (switch, time) in switches.iter().zip(times) {
+            assert!((switch.s - time).abs() < 1e-9, "{} {time}", switch.s);
+        }
+        let work = run.statistics;
+        let each = |count: usize| count as f64 / switches.len() as f64;
+        let (field, guards, bounds) = (each(work.field), each(work.guards), each(work.enclosures));
+        assert!(field < 40.0 && guards < 40.0 && bounds < 4.0, "{n}: {field} {guards} {bounds}");
+    }
 }
