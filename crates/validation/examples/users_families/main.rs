@@ -148,7 +148,7 @@ where
         eprintln!("  {what:?}");
     }
     for what in atlas.plane.findings().iter().take(SHOWN) {
-        eprintln!("  {what:?}");
+        eprintln!("  {what}");
     }
     for what in atlas.verification.mismatches.iter().take(SHOWN) {
         eprintln!("  {what:?}");
