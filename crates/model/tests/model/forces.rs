@@ -162,7 +162,7 @@ fn constants_that_do_not_fit_are_refused() {
     assert!(message.starts_with("normal_stiffness_kg_per_s2 = 100000 has no"), "{message}");
     let undamped = Law { damping: Damping::None, ..hooke };
     let message = refused(undamped, complete);
-    assert!(message.starts_with("damping_ratio = 0.1 has no meaning"), "{message}");
+    assert!(message.starts_with("damping_ratio = 0.2 has no meaning"), "{message}");
     assert!(Forces::new(undamped, &Constants { damping_ratio: None, ..complete }).is_ok());
 }
 

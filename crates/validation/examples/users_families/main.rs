@@ -145,10 +145,10 @@ where
         eprintln!("  {changes} changes between {points} runs along the upper edge");
     }
     for what in atlas.unresolved.iter().take(SHOWN) {
-        eprintln!("  {what}");
+        eprintln!("  {what:?}");
     }
     for what in atlas.plane.findings().iter().take(SHOWN) {
-        eprintln!("  {what:?}");
+        eprintln!("  {what}");
     }
     for what in atlas.verification.mismatches.iter().take(SHOWN) {
         eprintln!("  {what:?}");
