@@ -125,7 +125,7 @@ fn sections_and_basins_are_written() {
     assert_eq!(rows(&alone)[0].join(","), "a,direction,t,x,v,phase");
     assert_eq!(alone, diagram(2));
     let ran = directory.run(
-        "basins ball.slip --x x=0.014:0.02 --y v=0.4:0.6 --size 3x2 --settle 200 --table basins.csv \
+        "basins ball.slip --x x=0.014:0.017 --y v=0.49:0.51 --size 3x2 --settle 200 --table basins.csv \
          --plot basins.svg",
     );
     assert_eq!(ran.code, 0, "{}", ran.stderr);
