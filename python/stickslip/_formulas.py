@@ -310,13 +310,13 @@ class FormulaSystem:
         the run does not come to its end.
 
         >>> import stickslip
-        >>> tent = stickslip.system("""
+        >>> tent = stickslip.system(\"\"\"
         ... parameter m = 1.5
         ... state x = 0.25
         ... x' = 0
         ... every 1 from 1 "folds"
         ...   x := m*min(x, 1 - x)
-        ... """)
+        ... \"\"\")
         >>> t, (x,) = tent.section("folds", skip=0.5, time=3.0)
         >>> t.tolist(), x.tolist()
         ([1.0, 2.0, 3.0], [0.375, 0.5625, 0.65625])

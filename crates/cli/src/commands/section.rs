@@ -158,7 +158,9 @@ fn write_table(
                     rows.field(direction);
                 }
                 rows.number(*s);
-                state.iter().for_each(|value| rows.number(*value));
+                for value in state {
+                    rows.number(*value);
+                }
                 rows.end();
             }
             file.write(&rows)?;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use stickslip_expression::System;
-use stickslip_orbits::{Branch, BranchOptions, Guess, Orbits, SpecialKind};
+use stickslip_orbits::{Branch, BranchOptions, Guess, Orbit, Orbits, SpecialKind};
 
 /// The branch over the first parameter of a system, from the orbit to which it settles.
 fn settled(text: &str, range: [f64; 2]) -> Branch {
@@ -25,7 +25,7 @@ fn require(branch: &Branch, kind: SpecialKind, value: f64) {
     // The verdict changes there, and nowhere else.
     let side = |above: bool| {
         let all = branch.points.iter().filter(move |it| (it.parameters[0] > value) == above);
-        all.map(|it| it.is_admissible()).collect::<Vec<_>>()
+        all.map(Orbit::is_admissible).collect::<Vec<_>>()
     };
     for side in [side(false), side(true)] {
         assert!(!side.is_empty() && side.iter().all(|it| *it == side[0]), "{kind:?}: {side:?}");
