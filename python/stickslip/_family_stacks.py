@@ -18,7 +18,7 @@ from stickslip._family_options import TraceOptions, VerifyOptions
 from stickslip._progress import Progress, reported
 from stickslip._atlases import AtlasWarning
 from stickslip._collisions import _threads
-from stickslip._families import HybridFamily, _check_calls, _survey
+from stickslip._families import HybridFamily, _check_calls, _events_of, _survey
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -144,17 +144,17 @@ def stack_family(
     if not 1e-9 <= _number(width, "width") <= 0.1:
         raise ValueError(f"width = {width}; expected 1e-9 to 0.1")
 
-    def made(value: float) -> HybridFamily:
+    def family_at(value: float) -> HybridFamily:
         found = family(value)
         if not isinstance(found, HybridFamily):
             kind = type(found).__name__
             raise TypeError(f"family({value}) is of type {kind}; expected a HybridFamily")
         return found
 
-    events = _events_of(map(made, heights.tolist()), window)
+    events = _events_of(map(family_at, heights.tolist()), window)
 
     def member(value: float) -> _native.HybridFamily:
-        found = made(value)
+        found = family_at(value)
         found._compare(*([*interval, sum(interval) / 2.0] for interval in window))
         return found._up_to(events)
 

@@ -175,3 +175,26 @@ def test_a_start_that_chooses_the_mode_has_a_boundary() -> None:
     (curve,) = atlas.curves
     assert np.abs(curve.points[:, 0] - 2 * curve.points[:, 1]).max() < 1e-9
     assert curve.margin.place == "branch" and curve.margin.guard == "start"
+
+
+def test_a_stack_counts_as_few_events_in_all_its_atlases() -> None:
+    ball = stickslip.system("""
+        parameter g = 1, e = 0.5, height = 1
+        state x = height, v = 0
+        x' = v
+        v' = -g
+        when x < 0 "floor"
+          x := 0
+          v := -e*v
+        end = 3
+    """)
+    with pytest.warns(UserWarning, match="told apart up to event 4"):
+        stack = stickslip.stack_family(
+            lambda height: HybridFamily.of(ball, "g", "e", parameters={"height": height}),
+            (0.6, 0.9),
+            (0.3, 0.5),
+            [0.9, 1.0],
+            atlases=10,
+            **FEW,
+        )
+    assert len(stack.layers) == 2 and stack.objection is None

@@ -59,11 +59,10 @@ pub(crate) fn rules_named(
 /// The modes that may follow a rule of a mode: where its condition is ≥ 0, and where it is not.
 pub(crate) fn modes_after(rule: &Rule, mode: usize) -> (usize, usize) {
     match rule.next {
-        Next::Stay => (mode, mode),
+        // Systems with several surfaces are refused.
+        Next::Stay | Next::Slide { .. } => (mode, mode),
         Next::Mode(next) => (next, next),
         Next::Branch(_, above, below) => (above, below),
-        // Systems with several surfaces are refused.
-        Next::Slide { .. } => (mode, mode),
     }
 }
 

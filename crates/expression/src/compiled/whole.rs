@@ -12,9 +12,10 @@ pub(super) fn require(system: &System) -> Result<(), InvalidValue> {
     let first = system.otherwise.iter().map(|(_, mode)| *mode).chain([system.first]);
     require_below(modes, first.max().unwrap_or(0), "the first mode")?;
     for slide in &system.slides {
-        let (k, last) = (slide.surfaces.len(), |k| slide.first + count(k) - 1);
+        let k = slide.surfaces.len();
         require_below(5, k, "the number of surfaces")?;
-        require_below(modes, last(k), "the last mode of a slide")?;
+        let last = slide.first.saturating_add(count(k) - 1);
+        require_below(modes, last, "the last mode of a slide")?;
         let corners = slide.corners.len();
         if corners != 1 << k || slide.corners.iter().any(|slopes| slopes.len() != n) {
             return broken(

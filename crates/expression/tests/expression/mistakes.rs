@@ -215,12 +215,13 @@ fn parts_that_do_not_fit_are_refused() {
             "parameter a = 1\nstate x = a\nmode m\nx' = a\nwhen x > 2 -> n\nx := 0\nmode n\nx' = t";
         System::parse(text).expect("a system")
     };
-    let damages: [fn(&mut System); 8] = [
+    let damages: [fn(&mut System); 9] = [
         |it| it.first = 2,
         |it| it.modes.clear(),
         |it| it.components.clear(),
         |it| it.parameters.clear(),
         |it| it.modes[0].rules[0].next = Next::Mode(2),
+        |it| it.modes[0].rules[0].next = Next::Slide { slide: 0, guard: None },
         |it| it.modes[0].rules[0].changes[0].0 = 1,
         |it| it.graph = Graph::default(),
         |it| it.end = Some(it.modes[1].slopes[0]),
