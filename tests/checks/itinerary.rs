@@ -40,14 +40,14 @@ fn limits(law: Law) -> bool {
     law.endless_from().is_finite() || law.damping != Damping::None && law != Law::PAPER
 }
 
-/// Random contacts, `count` of them. All but the first quarter are beside one boundary, where
-/// phases are short: to find it takes as long as to judge many contacts beside it.
+/// Random contacts, at most `count` of them. The second half is beside one boundary, where phases
+/// are short: to find it takes as long as to judge many contacts beside it.
 ///
 /// κ is log-uniform from 1 to `stiffest`, ψ from 1e-3 to 3, the damping from 1e-10 to 10 (or to
 /// that with which contacts never end), and in one of eight contacts 0. Every second damped contact
 /// has a tangential damping from 0 to 2.
 pub fn random(law: Law, stiffest: f64, count: usize, random: &mut fastrand::Rng) -> Vec<Contact> {
-    let few = count.div_ceil(4);
+    let few = count.div_ceil(2);
     let mut contacts: Vec<_> = (0..few).map(|_| anywhere(law, stiffest, random)).collect();
     contacts.extend(beside_boundary(contacts[0], count - few, random));
     contacts

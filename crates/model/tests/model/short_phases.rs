@@ -24,7 +24,7 @@ fn contacts_of_every_law_have_the_right_switches() {
             }
         }
     }
-    assert!(right > 500 && near < 40, "{right} {near}");
+    assert!(right > 500 && near < right / 10, "{right} {near}");
 }
 
 /// The first stick phase is (a/κψ)² long, which is 1e-28 here. The stick phase that follows the

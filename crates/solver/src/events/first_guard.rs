@@ -125,7 +125,8 @@ impl<S: System> Examination<'_, S> {
                     break true;
                 }
                 reach *= 2.0;
-                if reach > most {
+                // At time 0, rounding moves no time.
+                if reach > most || reach == 0.0 {
                     break false;
                 }
             };

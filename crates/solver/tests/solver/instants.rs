@@ -228,6 +228,8 @@ impl Case {
             found.push((seen.guard, seen.s, false));
             found.extend(seen.simultaneous.iter().map(|&other| (other, seen.s, true)));
         }
+        // A guard that is named where another one acts may have acted itself too.
+        found.sort_by_key(|(_, _, named)| *named);
         for act in acts(true) {
             let near = |(guard, s, _): &(usize, f64, bool)| {
                 *guard == act.guard && self.wrong_time(*s, act).is_none()
@@ -239,7 +241,7 @@ impl Case {
                     double(act.s)
                 )));
             };
-            found.swap_remove(index);
+            found.remove(index);
         }
         // Guards that are zero there and do not act are named as well.
         found.retain(|(_, _, named)| !named);
