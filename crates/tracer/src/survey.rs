@@ -209,7 +209,8 @@ impl<'w, E> Surveyor<'w, E> {
     /// more places.
     ///
     /// If something is in doubt then, the window is traced by margins. If nothing is in doubt after
-    /// that, this is the result, with the lines of the margins.
+    /// that, this is the result, with the lines of the margins, unless they may end in cusps that
+    /// the family knows: only the first way solves for these.
     fn finish<'f, D: Draft>(
         &self,
         draft: &'f D,
@@ -228,7 +229,9 @@ impl<'w, E> Surveyor<'w, E> {
         let mut surveyed = false;
         if finished && !atlas.agrees() {
             match self.by_margins(draft, &tracer.window()) {
-                Ok(Some(other)) if other.0.agrees() => return Ok(other),
+                Ok(Some((other, Some(lines)))) if other.agrees() && !lines.have_cusps() => {
+                    return Ok((other, Some(lines)));
+                }
                 // Runs may fail where the first way had nothing to look for.
                 Ok(Some(_)) | Err(_) => {}
                 Ok(None) => surveyed = true,

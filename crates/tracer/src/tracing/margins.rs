@@ -68,7 +68,7 @@ pub(crate) struct Arranged<F: Family> {
 /// differ.
 ///
 /// [`trace`](crate::trace()) follows boundaries by their labels, and knows the accuracy of each
-/// vertex. This way also tells boundaries apart that touch, between which a strip is narrower than
+/// vertex; at cusps that the family knows it is more accurate. This way also tells boundaries apart that touch, between which a strip is narrower than
 /// labels can tell. Neither finds every boundary of every family: verify the regions. A
 /// [`Surveyor`](crate::Surveyor) does, and takes this way where the other one leaves a doubt.
 ///
@@ -103,6 +103,11 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
             seeds: 0,
             curves: Vec::new(),
         })
+    }
+
+    /// Whether boundaries may end in cusps that the family knows. Lines are not extended to them.
+    pub fn have_cusps(&self) -> bool {
+        self.curves.iter().any(|curve| !self.runs.cusps(&curve.margin).is_empty())
     }
 
     /// Searches along the edges of a lattice, and around all places where lines meet. Returns
