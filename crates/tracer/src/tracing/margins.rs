@@ -67,10 +67,11 @@ pub(crate) struct Arranged<F: Family> {
 /// followed without labels, divided where they meet, and kept where the labels on their sides
 /// differ.
 ///
-/// [`trace`](crate::trace()) follows boundaries by their labels, and knows the accuracy of each
-/// vertex; at cusps that the family knows it is more accurate. This way also tells boundaries apart that touch, between which a strip is narrower than
-/// labels can tell. Neither finds every boundary of every family: verify the regions. A
-/// [`Surveyor`](crate::Surveyor) does, and takes this way where the other one leaves a doubt.
+/// [`trace`](crate::trace()) follows boundaries by their labels, knows the accuracy of each vertex,
+/// and solves for the cusps that the family knows; lines only come close to these. This way tells
+/// boundaries apart that touch, between which a strip is narrower than labels can tell. Neither
+/// finds every boundary of every family: verify the regions. A [`Surveyor`](crate::Surveyor) does,
+/// and takes this way where the other one leaves a doubt.
 ///
 /// # Errors
 /// An option is out of its range, the window is not a rectangle, a run fails, or a margin is not a
