@@ -7,8 +7,6 @@
 //! of options, and files), [`map`] (the files of a map, also of one that is not finished) and
 //! `error` (what can go wrong).
 
-#![allow(clippy::missing_errors_doc, reason = "errors of the program are sentences for its user")]
-
 mod error;
 pub mod input;
 pub mod map;

@@ -60,6 +60,10 @@ impl Reproduction {
 
 impl Part {
     /// Computes the part on the threads of the current pool.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: maps have no cells, a collision cannot be computed, boundaries cannot
+    /// be traced, or a picture cannot be drawn.
     pub fn run(&self, reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         if reproduction.cells == 0 {
             return Err(ReproductionError::NoCells);

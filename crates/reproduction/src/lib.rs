@@ -17,8 +17,6 @@
 //! # Ok::<(), stickslip_reproduction::ReproductionError>(())
 //! ```
 
-#![allow(clippy::missing_errors_doc, reason = "errors of the program are sentences for its user")]
-
 mod error;
 pub mod figures;
 pub mod statements;

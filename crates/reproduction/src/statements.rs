@@ -43,6 +43,9 @@ pub struct Audit {
 }
 
 /// Tests the statements `numbers`, from 1 to [`COUNT`], on the threads of the current pool.
+///
+/// # Errors
+/// [`ReproductionError`]: a number is not from 1 to [`COUNT`], or a collision cannot be computed.
 pub fn run(
     spring: Spring,
     numbers: &[u8],

@@ -39,6 +39,9 @@ pub struct RunsAtlas {
 }
 
 /// Reads an atlas; `-` is standard input.
+///
+/// # Errors
+/// [`FileError::Input`]: the file cannot be read, does not hold an atlas, or contradicts itself.
 pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     let unusable = |reason: String| FileError::input(source::shown(path), reason);
     let text = source::read(path, MOST_BYTES)?;

@@ -28,11 +28,18 @@ pub use velocities::{Velocities, VelocitiesError};
 /// standard input.
 ///
 /// Motions may be in the file, but they are not used.
+///
+/// # Errors
+/// [`FileError::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. The
+/// message names the line or the field, and what is expected there.
 pub fn read_pair(path: &Path, law: Law) -> Result<BodyPair, FileError> {
     read_sphere_and_pair(path, law).map(|(_, pair)| pair)
 }
 
 /// As [`read_pair`], with the first sphere.
+///
+/// # Errors
+/// As [`read_pair`].
 pub fn read_sphere_and_pair(path: &Path, law: Law) -> Result<(Sphere, BodyPair), FileError> {
     read(path, |file| {
         let Bodies { sphere: (sphere, _), other, forces } = file.resolve(law)?;
@@ -43,6 +50,9 @@ pub fn read_sphere_and_pair(path: &Path, law: Law) -> Result<(Sphere, BodyPair),
 
 /// The two bodies in the file at `path` at the moment when they touch, and their contact law; `-`
 /// is standard input. Their motions are those of the file, or those of velocities of the surfaces.
+///
+/// # Errors
+/// [`FileError::Input`]: as [`read_pair`], or a motion is missing, or the bodies do not collide.
 pub fn read_encounter(
     path: &Path,
     law: Law,
@@ -54,6 +64,9 @@ pub fn read_encounter(
 impl Bodies {
     /// The bodies at the moment when they touch, with the motions of the file, or with velocities
     /// of the surfaces.
+    ///
+    /// # Errors
+    /// A motion is missing, or the bodies do not collide.
     fn encounter(&self, velocities: Option<Velocities<f64>>) -> Result<Encounter, String> {
         let Self { sphere: (sphere, motion), other, forces } = self;
         if let Some(velocities) = velocities {

@@ -12,6 +12,9 @@ use crate::error::FileError;
 const MOST_BYTES: u64 = 1 << 16;
 
 /// Refuses a tangential damping, called `what`, in a law that is known to have none.
+///
+/// # Errors
+/// [`FileError::Option`]: the law has no tangential damping.
 pub fn permits(law: Option<&str>, what: &str, damping: f64) -> Result<(), FileError> {
     match law.and_then(presets::find) {
         Some(preset) if damping != 0.0 && !preset.tangential_damping => {
@@ -26,12 +29,19 @@ pub fn permits(law: Option<&str>, what: &str, damping: f64) -> Result<(), FileEr
 }
 
 /// The law with this name, or otherwise in this file; without either, the paper's.
+///
+/// # Errors
+/// [`FileError::Input`]: there is neither such a name nor such a file, or the file does not
+/// describe a law.
 pub fn by_name_or_file(text: Option<&str>) -> Result<Law, FileError> {
     let Some(text) = text else { return Ok(Law::PAPER) };
     presets::find(text).map_or_else(|| read(Path::new(text)), |preset| Ok(preset.law))
 }
 
 /// The preset with this name.
+///
+/// # Errors
+/// [`FileError::Option`]: there is none.
 pub fn named(name: &str) -> Result<Preset, FileError> {
     presets::find(name).ok_or_else(|| {
         let expected = "expected a name that `stickslip laws` lists";

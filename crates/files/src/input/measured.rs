@@ -15,6 +15,9 @@ const COMMENT: &str = "comment";
 
 /// The data in the file at `path`, or in standard input if it is `-`. Rows have the numbers of
 /// their lines.
+///
+/// # Errors
+/// [`FileError::Input`]: the file cannot be read, or does not describe measured impacts.
 pub fn read(path: &Path, speed: Option<f64>, scaled: bool) -> Result<Vec<Datum>, FileError> {
     let text = source::read(path, MOST_BYTES)?;
     let failed = |reason: String| FileError::input(source::shown(path), reason);

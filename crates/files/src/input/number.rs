@@ -4,6 +4,9 @@
 pub const SYNTAX: &str = "written like 18, 1.5e3 or 2/7";
 
 /// Reads the value of an option whose range is checked later, by what it is for.
+///
+/// # Errors
+/// What is wrong, and what is expected.
 pub fn parse_option(text: &str) -> Result<f64, String> {
     parse(text).map_err(|problem| format!("{problem}; expected a finite number, {SYNTAX}"))
 }
@@ -12,6 +15,9 @@ pub fn parse_option(text: &str) -> Result<f64, String> {
 /// them.
 ///
 /// Blanks around a number are ignored.
+///
+/// # Errors
+/// The text says what is wrong.
 pub fn parse(text: &str) -> Result<f64, &'static str> {
     let value = match text.split_once('/') {
         None => decimal(text)?,

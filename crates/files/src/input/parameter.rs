@@ -45,11 +45,17 @@ impl Parameter {
     }
 
     /// The value in `text`.
+    ///
+    /// # Errors
+    /// The text is not a number, or out of the parameter's range.
     pub fn parse(self, text: &str) -> Result<f64, String> {
         checked(text, &self.expected(), |value| self.check(value).is_ok())
     }
 
     /// `value`, if it is in the parameter's range. The model decides on the ranges that it knows.
+    ///
+    /// # Errors
+    /// What is expected.
     pub fn check(self, value: f64) -> Result<f64, Cow<'static, str>> {
         let contact = match self {
             Self::Kappa => Contact::new(value, 1.0, 0.0),
@@ -79,6 +85,9 @@ impl Parameter {
 }
 
 /// The value of a quantity in SI units in `text`.
+///
+/// # Errors
+/// The text is not a number, or out of the quantity's range.
 pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, String> {
     checked(text, quantity.expected, |value| quantity.check(value).is_ok())
 }

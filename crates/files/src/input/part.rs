@@ -17,6 +17,9 @@ impl MapPart {
     pub const MOST: usize = 1_000_000;
 
     /// Reads `K/N`.
+    ///
+    /// # Errors
+    /// What is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let expected = format!(
             "expected K/N, two whole numbers with 1 <= K <= N <= {}, written like 3/64",

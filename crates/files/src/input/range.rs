@@ -6,6 +6,9 @@ use crate::input::number;
 use crate::input::parameter::Parameter;
 
 /// Reads an interval `LO:HI` of `parameter`, both ends of which are in its range.
+///
+/// # Errors
+/// The text says what is wrong and what is expected.
 pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
     let Range { low, high } = parse(text)?;
     match (parameter.check(low), parameter.check(high)) {
@@ -15,6 +18,9 @@ pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
 }
 
 /// Reads an interval `LO:HI` above 0.
+///
+/// # Errors
+/// The text says what is wrong and what is expected.
 pub fn parse_above_0(text: &str) -> Result<Range, String> {
     let range = parse(text)?;
     if range.low > 0.0 { Ok(range) } else { Err(ZERO.to_owned()) }
@@ -50,6 +56,9 @@ impl OneOrRange {
 }
 
 /// Reads a value of `parameter`, or an interval `LO:HI` as [`parse_for`].
+///
+/// # Errors
+/// What is wrong and what is expected.
 pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange, String> {
     if text.contains(':') {
         return parse_for(parameter, text).map(OneOrRange::Range);
@@ -59,6 +68,9 @@ pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange
 }
 
 /// Reads an interval `LO:HI`, which may begin at 0.
+///
+/// # Errors
+/// The text says what is wrong and what is expected.
 pub fn parse(text: &str) -> Result<Range, String> {
     let (low, high) = text.split_once(':').ok_or(format!("not a range; {EXPECTED}"))?;
     let end = |name, text| {
@@ -93,6 +105,9 @@ impl Size {
     pub const MOST: usize = 10_usize.saturating_pow(10);
 
     /// Reads `WxH`.
+    ///
+    /// # Errors
+    /// What is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let expected = format!(
             "expected WxH, two whole numbers from 1 whose product is at most {}, \

@@ -83,6 +83,9 @@ enum Source {
 
 impl<T> ImpactParameter<T> {
     /// The one of ψ and the ratio that is given, where options give μ and α.
+    ///
+    /// # Errors
+    /// [`RecipeError`]: none of them is given, or both are, or μ or α would not be used.
     pub fn new(
         (psi, ratio): (Option<T>, Option<T>),
         (mu, alpha): (Option<f64>, Option<f64>),
@@ -105,6 +108,10 @@ impl<T> ImpactParameter<T> {
 impl Recipe {
     /// The recipe that options make together with the columns of a file. `column` gives the index
     /// of a parameter's column.
+    ///
+    /// # Errors
+    /// [`RecipeError`]: κ is missing where the law has a spring, exactly one of ψ and the ratio is
+    /// not given, or a value is given twice or would not be used.
     pub fn new(
         given: &Given,
         column: impl Fn(Parameter) -> Option<usize>,
@@ -135,6 +142,9 @@ impl Recipe {
     }
 
     /// The contact. `field` gives the text in a column.
+    ///
+    /// # Errors
+    /// The text names the parameter and its text or value.
     pub fn contact<'a>(&self, field: impl Fn(usize) -> &'a [u8]) -> Result<Contact, String> {
         let value = |source: Source| match source {
             Source::Value(value) => Ok(value),
@@ -169,6 +179,9 @@ impl Recipe {
 }
 
 /// ψ at the impact ratio `ratio`.
+///
+/// # Errors
+/// ψ is out of its range, although the ratio, μ and α are in theirs.
 pub fn reduced(reduction: &Reduction, ratio: f64) -> Result<f64, String> {
     let psi = reduction.psi(ratio);
     Parameter::Psi

@@ -31,6 +31,9 @@ pub trait Reading: Clone + Send + Sync {
     type Case: Send + Sync;
 
     /// What the fields of a row mean, of which there is one for each column.
+    ///
+    /// # Errors
+    /// What is wrong in which column, and what is expected.
     fn read(&mut self, fields: &ByteRecord) -> Result<Self::Case, String>;
 }
 
@@ -65,6 +68,9 @@ pub struct Row<C> {
 impl<R: Reading> Input<R> {
     /// Opens `path`, or standard input if it is `-`, and reads the header, with which `reading`
     /// begins.
+    ///
+    /// # Errors
+    /// [`FileError::Input`]: the file cannot be read, or `reading` refuses the header.
     pub fn open(
         path: &Path,
         reading: impl FnOnce(&ByteRecord) -> Result<R, String>,
@@ -96,6 +102,9 @@ impl<R: Reading> Input<R> {
 
     /// Reads the next portion into `rows`, on all threads of the present pool. It is empty at the
     /// end of the file.
+    ///
+    /// # Errors
+    /// The file cannot be read.
     pub fn read_portion(&mut self, rows: &mut Vec<Row<R::Case>>) -> Result<(), FileError> {
         let portion = self.portions.next(ROWS).map_err(|error| unreadable(&self.path, &error))?;
         let blank = || Row { fields: ByteRecord::new(), case: Err(String::new()) };

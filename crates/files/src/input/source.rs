@@ -15,6 +15,9 @@ pub struct Source {
 }
 
 /// Opens the file at `path`.
+///
+/// # Errors
+/// [`FileError::Input`]: it cannot be opened.
 pub fn open(path: &Path) -> Result<Source, FileError> {
     if is_standard_input(path) {
         return Ok(Source { bytes: Box::new(io::stdin()), size: None });
@@ -26,6 +29,9 @@ pub fn open(path: &Path) -> Result<Source, FileError> {
 }
 
 /// Reads the file at `path`, which may have so many bytes.
+///
+/// # Errors
+/// [`FileError::Input`]: it cannot be read, or is longer.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     let Source { bytes, .. } = open(path)?;
     let mut text = Vec::new();

@@ -11,6 +11,9 @@ use super::results::Results;
 
 /// Writes the header and one row per point, in the order of the rows of the map. What all points
 /// have in common is repeated in each row.
+///
+/// # Errors
+/// `out` cannot be written, or a part of the results cannot be read.
 pub fn write(
     out: impl Write,
     grid: &Grid,

@@ -12,6 +12,9 @@ use super::results::Results;
 
 /// Writes the coordinates, both arrays of results, and, as arrays without dimensions, what made
 /// them. One part of the results at a time is in memory.
+///
+/// # Errors
+/// `out` cannot be written, or a part of the results cannot be read.
 pub fn write(
     out: impl Write,
     grid: &Grid,
@@ -54,6 +57,9 @@ pub fn write(
 
 /// The map of `grid` with its `results`, which `engine` computed in this `program`, as an archive
 /// in memory.
+///
+/// # Errors
+/// The archive cannot be made.
 pub fn archive(grid: &Grid, engine: &Engine, results: &Tile, program: &str) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write(&mut bytes, grid, &Provenance::new(grid, engine, program), results)?;

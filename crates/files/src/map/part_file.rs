@@ -59,6 +59,9 @@ pub struct PartFile {
 }
 
 /// Writes a `part` of a map, whose `tiles` are all finished.
+///
+/// # Errors
+/// `out` cannot be written, or a tile cannot be read.
 pub fn write(out: impl Write, part: MapPart, tiles: &Tiles) -> io::Result<()> {
     let mut out = BufWriter::new(out);
     let task = tiles.task();
@@ -73,6 +76,10 @@ pub fn write(out: impl Write, part: MapPart, tiles: &Tiles) -> io::Result<()> {
 }
 
 /// The file at `out`, if it holds this `part` of the map that `task` makes.
+///
+/// # Errors
+/// [`FileError::Input`]: it holds another part of this map, since the parts need a file each.
+/// Anything else is replaced, as with every output.
 pub fn find(out: &Path, part: MapPart, task: &Task) -> Result<Option<PartFile>, FileError> {
     let there = PartFile::open(out, &task.program).ok();
     match there.filter(|there| there.is_of(task) && there.part.count == part.count) {
@@ -90,6 +97,10 @@ pub fn find(out: &Path, part: MapPart, task: &Task) -> Result<Option<PartFile>, 
 
 impl PartFile {
     /// Reads the header of the file at `path`, and checks that the file has its length.
+    ///
+    /// # Errors
+    /// [`FileError::Input`]: the file cannot be read, is not a part, is damaged, or was made by
+    /// another build than this `program`.
     pub fn open(path: &Path, program: &str) -> Result<Self, FileError> {
         let unreadable = |error: io::Error| unreadable(path, &error);
         // A pipe would block whoever opens it.
@@ -139,6 +150,9 @@ impl PartFile {
     }
 
     /// Refuses this part unless it and the part `first` can be joined.
+    ///
+    /// # Errors
+    /// [`FileError::Input`]: it belongs to another map, or the map was divided otherwise.
     pub fn require_beside(&self, first: &Self) -> Result<(), FileError> {
         let other = first.path.display();
         let (ours, theirs) = difference(&self.task.description, &first.task.description);
@@ -159,6 +173,9 @@ impl PartFile {
     }
 
     /// Refuses this part unless it has the same results as `other`, which is the same part.
+    ///
+    /// # Errors
+    /// [`FileError::Input`]: it has other results, or a tile cannot be read.
     pub fn require_same(&self, other: &Self) -> Result<(), FileError> {
         for index in self.tiles() {
             let [ours, theirs] = [self, other].map(|file| {

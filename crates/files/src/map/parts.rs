@@ -20,6 +20,10 @@ pub struct Parts(Vec<PartFile>);
 
 impl Parts {
     /// Opens the parts at `paths`, which may have any order, and which this `program` made.
+    ///
+    /// # Errors
+    /// [`FileError::Input`]: a file is not an intact part, a part is missing or is there with
+    /// different results, or the parts are not those of one map.
     pub fn open(paths: &[PathBuf], program: &str) -> Result<Self, FileError> {
         let mut files: BTreeMap<usize, PartFile> = BTreeMap::new();
         let mut first: Option<PartFile> = None;
@@ -45,6 +49,9 @@ impl Parts {
 
     /// Checks every tile, and counts the points without a result. `checked` gets the number of
     /// points of each tile.
+    ///
+    /// # Errors
+    /// [`FileError::Input`] names the file that is damaged or cannot be read.
     pub fn check(&self, checked: impl Fn(usize)) -> Result<FailureCount, FileError> {
         let mut count = FailureCount::default();
         for file in &self.0 {

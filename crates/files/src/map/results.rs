@@ -12,9 +12,15 @@ use crate::error::FileError;
 /// All results of a map or of a part of it.
 pub trait Results {
     /// Passes each tile with its points to `take`, one after the other in order.
+    ///
+    /// # Errors
+    /// A tile cannot be read, or `take` fails.
     fn each(&self, take: impl FnMut(Range<usize>, &Tile) -> io::Result<()>) -> io::Result<()>;
 
     /// The points without a result.
+    ///
+    /// # Errors
+    /// A tile cannot be read.
     fn failures(&self) -> io::Result<FailureCount> {
         let mut count = FailureCount::default();
         self.each(|points, tile| {
@@ -34,6 +40,9 @@ pub trait Stored {
     fn tiles(&self) -> Range<usize>;
 
     /// Reads a tile.
+    ///
+    /// # Errors
+    /// The tile cannot be read, or is not what was written.
     fn read(&self, index: usize) -> io::Result<Tile>;
 
     /// The failure to read a tile.

@@ -11,6 +11,9 @@ use super::results::Stored;
 ///
 /// A pixel shows the cell at its centre. There are at most `most` × `most` pixels, and not more
 /// than the map has cells. One tile at a time is in memory.
+///
+/// # Errors
+/// A tile cannot be read.
 pub fn read(stored: &impl Stored, most: usize) -> io::Result<((usize, usize), Tile)> {
     let grid = stored.task().grid;
     let [columns, rows] = [grid.columns, grid.rows].map(|axis| centres(axis, most));

@@ -51,6 +51,10 @@ impl Tiles {
 
     /// Opens the directory of the tiles of `out`, `OUT.tiles`, and creates it if it is missing. The
     /// tiles are those of a `part` of the task, or of all of it.
+    ///
+    /// # Errors
+    /// The directory cannot be created, another process works there, its tiles are those of another
+    /// task or part, or the program did not make it.
     pub fn open(out: &Path, task: Task, part: Option<MapPart>) -> Result<Self, FileError> {
         if out.is_dir() {
             return Err(FileError::output(out, io::ErrorKind::IsADirectory));
@@ -90,6 +94,9 @@ impl Tiles {
     }
 
     /// Looks for finished tiles and checks each of them.
+    ///
+    /// # Errors
+    /// A tile cannot be read.
     pub fn find(&self) -> io::Result<Found> {
         let mut found = Found::default();
         for entry in fs::read_dir(&self.directory)? {
@@ -105,6 +112,9 @@ impl Tiles {
     }
 
     /// Stores a finished tile.
+    ///
+    /// # Errors
+    /// The tile cannot be written.
     pub fn keep(&self, index: usize, tile: &Tile) -> Result<(), FileError> {
         let bytes = tile.to_bytes(&self.task.label(index));
         // If a power cut leaves a tile incomplete, its checksum tells.

@@ -98,16 +98,25 @@ pub struct CsvFile {
 
 impl CsvFile {
     /// Starts to write `path`.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the file cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         Ok(Self { file: OutputFile::create(path)?, rows: Rows::default() })
     }
 
     /// Makes sure that `path` can be written.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the file cannot be created.
     pub fn probe(path: &Path) -> Result<(), FileError> {
         OutputFile::create(path).map(drop)
     }
 
     /// Writes rows.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: they cannot be written.
     pub fn write(&mut self, rows: &Rows) -> Result<(), FileError> {
         self.file.write_all(&rows.text).map_err(|error| self.file.failure(error))
     }
@@ -132,6 +141,9 @@ impl CsvFile {
     }
 
     /// The file with all rows.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the file cannot be stored.
     pub fn store(mut self) -> Result<StoredFile, FileError> {
         self.flush()?;
         self.file.store()

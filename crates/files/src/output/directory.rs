@@ -8,6 +8,10 @@ use crate::error::FileError;
 
 /// Makes sure that files can be written into `directory`, before there is work to lose. Creates the
 /// directory if it is missing.
+///
+/// # Errors
+/// [`FileError::Option`]: it is not a directory. [`FileError::Output`]: it cannot be created or
+/// written.
 pub fn prepare(directory: &Path) -> Result<(), FileError> {
     if directory.exists() && !directory.is_dir() {
         let directory = directory.display();

@@ -56,6 +56,10 @@ enum Destination {
 
 impl OutputFile {
     /// Starts to write `path`, whose directory must exist.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the directory is missing or cannot be written, or `path` is a
+    /// directory.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let target = target(path);
         let directory = match target.parent() {
@@ -67,6 +71,10 @@ impl OutputFile {
 
     /// Starts to write `path`. The incomplete file is in `directory`, on the file system of the
     /// target.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: `directory` is missing or cannot be written, or `path` is a
+    /// directory.
     pub fn create_in(directory: &Path, path: &Path) -> Result<Self, FileError> {
         let destination = Destination::new(directory, path);
         let destination = destination.map_err(|error| FileError::output(path, error))?;
@@ -74,12 +82,18 @@ impl OutputFile {
     }
 
     /// Writes `content` and stores the file.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: it cannot be written.
     pub fn finish(mut self, content: &[u8]) -> Result<StoredFile, FileError> {
         self.write_all(content).map_err(|error| self.failure(error))?;
         self.store()
     }
 
     /// Makes sure that everything is stored on the disk.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the disk is full or fails.
     pub fn store(mut self) -> Result<StoredFile, FileError> {
         let stored = match &self.destination {
             Destination::Beside { partial, .. } => partial.as_file().sync_all(),
@@ -129,12 +143,18 @@ pub fn publish(files: impl IntoIterator<Item = StoredFile>) -> Result<(), FileEr
 }
 
 /// Writes a file at once or not at all.
+///
+/// # Errors
+/// [`FileError::Output`]: the file cannot be written.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), FileError> {
     publish([OutputFile::create(path)?.finish(content)?])
 }
 
 /// Writes a file at once or not at all, unless the power fails: it is not stored on the disk before
 /// it gets its name.
+///
+/// # Errors
+/// [`FileError::Output`]: the file cannot be written.
 pub fn write_unsynchronised(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let mut file = OutputFile::create(path)?;
     file.write_all(content).map_err(|error| file.failure(error))?;

@@ -12,6 +12,9 @@ pub use rawzip::ZipArchiveWriter as Archive;
 use rawzip::{Error, ErrorKind};
 
 /// Writes the entry `name`.npy, whose content `elements` writes.
+///
+/// # Errors
+/// The archive cannot be written.
 pub fn array<W: Write>(
     archive: &mut Archive<W>,
     name: &str,
@@ -50,11 +53,17 @@ pub fn plain(error: Error) -> io::Error {
 }
 
 /// Writes a number as an array without dimensions.
+///
+/// # Errors
+/// The archive cannot be written.
 pub fn number<W: Write>(archive: &mut Archive<W>, name: &str, value: f64) -> io::Result<()> {
     array(archive, name, "<f8", "", |out| out.write_all(&value.to_le_bytes()))
 }
 
 /// Writes a text as an array without dimensions.
+///
+/// # Errors
+/// The archive cannot be written.
 pub fn text<W: Write>(archive: &mut Archive<W>, name: &str, text: &str) -> io::Result<()> {
     // In NumPy a character takes four bytes.
     let element = format!("<U{}", text.chars().count());
@@ -64,6 +73,9 @@ pub fn text<W: Write>(archive: &mut Archive<W>, name: &str, text: &str) -> io::R
 }
 
 /// Writes texts as an array of this shape.
+///
+/// # Errors
+/// The archive cannot be written.
 pub fn texts<'a, W: Write>(
     archive: &mut Archive<W>,
     name: &str,

@@ -31,6 +31,9 @@ struct Listed(PathBuf);
 
 impl Partial<NamedTempFile> {
     /// A file in `directory` that will be called `name`.
+    ///
+    /// # Errors
+    /// It cannot be created.
     pub fn file(directory: &Path, name: &OsStr) -> io::Result<Self> {
         Self::new(name, NamedTempFile::path, |builder| {
             #[cfg(unix)]
@@ -51,6 +54,9 @@ impl Partial<NamedTempFile> {
 
 impl Partial<TempDir> {
     /// A directory beside `target`, of which it will have the name.
+    ///
+    /// # Errors
+    /// It cannot be created.
     pub fn directory(target: &Path) -> io::Result<Self> {
         let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
         let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty());
@@ -125,6 +131,9 @@ pub fn completed(name: &OsStr) -> Option<&str> {
 /// Removes everything that is not complete when a signal ends the program.
 ///
 /// Signals that were ignored when the program began, as `nohup` does, are still ignored.
+///
+/// # Errors
+/// The signals cannot be watched.
 #[cfg(unix)]
 pub fn remove_on_signals() -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

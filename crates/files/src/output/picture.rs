@@ -22,6 +22,9 @@ enum PictureFormat {
 
 impl PictureFile {
     /// The picture file `path`, whose name tells its format.
+    ///
+    /// # Errors
+    /// The name does not end in .svg or .png.
     pub fn new(path: PathBuf) -> Result<Self, String> {
         let is =
             |name: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(name));
@@ -41,11 +44,17 @@ impl PictureFile {
     }
 
     /// Makes sure that the file can be written, before there is work to lose.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the file cannot be created.
     pub fn probe(&self) -> Result<(), FileError> {
         OutputFile::create(&self.path).map(drop)
     }
 
     /// Writes `picture` completely, except for the name of the file.
+    ///
+    /// # Errors
+    /// [`FileError::Picture`]: it cannot be drawn. [`FileError::Output`]: it cannot be written.
     pub fn write(&self, picture: Result<Svg, FigureError>) -> Result<StoredFile, FileError> {
         let bytes = picture.and_then(|picture| match self.format {
             PictureFormat::Svg => Ok(picture.document().into_bytes()),
@@ -63,6 +72,9 @@ pub struct AnimationFile(PathBuf);
 
 impl AnimationFile {
     /// The file `path`.
+    ///
+    /// # Errors
+    /// The name does not end in .gif.
     pub fn new(path: PathBuf) -> Result<Self, String> {
         match path.extension() {
             Some(given) if given.eq_ignore_ascii_case("gif") => Ok(Self(path)),
@@ -76,11 +88,18 @@ impl AnimationFile {
     }
 
     /// Makes sure that the file can be written, before there is work to lose.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the file cannot be created.
     pub fn probe(&self) -> Result<(), FileError> {
         OutputFile::create(&self.0).map(drop)
     }
 
     /// Writes `pictures` completely, except for the name of the file.
+    ///
+    /// # Errors
+    /// [`FileError::Picture`]: they cannot be drawn. [`FileError::Output`]: the file cannot be
+    /// written.
     pub fn write(&self, pictures: impl Iterator<Item = Svg>) -> Result<StoredFile, FileError> {
         let failed = |source| FileError::Picture { path: self.0.clone(), source };
         let bytes = gif(pictures).map_err(failed)?;

@@ -11,6 +11,9 @@ use crate::error::FileError;
 
 /// Writes all files of `study` and its `pictures` into `directory`, each of them at once or not at
 /// all.
+///
+/// # Errors
+/// [`FileError::Output`]: a file cannot be written.
 pub fn write_study(study: &Study, pictures: &[Picture], directory: &Path) -> Result<(), FileError> {
     for table in &study.tables {
         write(&directory.join(format!("{}.csv", table.name)), &csv(table))?;

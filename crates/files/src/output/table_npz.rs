@@ -9,6 +9,9 @@ use super::npz::{array, number, plain, text};
 
 /// The table that this `program` made as NumPy arrays, with the names of
 /// [`Arrays`](stickslip_practice::tables::Arrays).
+///
+/// # Errors
+/// The archive cannot be made.
 pub fn archive(table: &Table, program: &str) -> io::Result<Vec<u8>> {
     let arrays = table.arrays();
     let mut bytes = Vec::new();

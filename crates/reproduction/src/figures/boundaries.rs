@@ -24,6 +24,9 @@ pub const KAPPA: Range = Range { low: 0.05, high: 100.0 };
 pub const PSI: Range = Range { low: 0.01, high: 3.0 };
 
 /// Computes the part.
+///
+/// # Errors
+/// The boundaries cannot be traced.
 pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let frame = Frame::new(KAPPA, PSI, 0.0);
     let tolerance = frame.tolerances().usual;

@@ -10,12 +10,18 @@ use crate::error::ReproductionError;
 use crate::statements::Spring;
 
 /// The undamped collision at κ and ψ, by the exact solution.
+///
+/// # Errors
+/// [`ReproductionError`]: it cannot be computed.
 pub fn collide(kappa: f64, psi: f64) -> Result<Collision, ReproductionError> {
     Spring::Reset.collide(kappa, psi, 0.0)
 }
 
 /// The collision where the axis of stiffness shows `value`, at an impact ratio, and its course by
 /// Dormand–Prince 8(5,3).
+///
+/// # Errors
+/// [`ReproductionError`]: it cannot be computed.
 pub fn followed(
     reading: Reading,
     value: f64,

@@ -29,6 +29,9 @@ const COLUMNS: [Column; 3] = [
 ];
 
 /// Computes the part.
+///
+/// # Errors
+/// The picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells.min(MOST_CELLS) };
     let velocities: Vec<f64> = (0..axis.cells).map(|index| axis.centre(index)).collect();

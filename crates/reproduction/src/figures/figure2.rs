@@ -33,6 +33,9 @@ const SURFACE: Surface = Surface {
 };
 
 /// Computes the part.
+///
+/// # Errors
+/// The picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let pair = BodyPair::equal_spheres(STEEL_RADIUS_M, &STEEL, &SURFACE)?;
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells };

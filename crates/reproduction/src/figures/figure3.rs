@@ -17,6 +17,9 @@ use crate::error::ReproductionError;
 pub const TITLE: &str = "Figure 3: restitution over stiffness and impact ratio";
 
 /// Computes the part.
+///
+/// # Errors
+/// The picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let maps = StiffnessMap::both(reproduction, MOST_RATIO_3);
     let (findings, numbers): (Vec<_>, Vec<_>) = maps.iter().map(extremes).unzip();

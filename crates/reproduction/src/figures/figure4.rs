@@ -38,6 +38,9 @@ const COLUMNS: [Column; 7] = [
 type Lines = [Vec<Interval>; 2];
 
 /// Computes the part.
+///
+/// # Errors
+/// Boundaries cannot be traced, or the picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let verified = reproduction.boundaries()?;
     let lines =

@@ -33,6 +33,9 @@ const COLUMNS: [Column; 10] = [
 ];
 
 /// Computes the part.
+///
+/// # Errors
+/// Boundaries cannot be traced, or a collision cannot be computed.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let points = points(&intervals(reproduction, Reading::Axis)?)?;
     let (mut findings, mut tables, mut pictures) = (Vec::new(), Vec::new(), Vec::new());

@@ -24,6 +24,9 @@ const FIRST_MINIMUM: Column =
 const COLUMNS: [Column; 7] = [AXIS, KAPPA, RATIO, SWITCHES, PHASES, FIRST_MINIMUM, EPS_T];
 
 /// Computes the part.
+///
+/// # Errors
+/// A collision cannot be computed.
 pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     let (mut findings, mut summary) = (Vec::new(), Vec::new());
     let (mut tables, mut pictures) = (Vec::new(), Vec::new());

@@ -35,6 +35,9 @@ pub struct LetteredPoint {
 }
 
 /// The intervals on the line of the points, from the upper edge of Figure 4 down to 0.
+///
+/// # Errors
+/// Boundaries cannot be traced, or a collision cannot be computed.
 pub fn intervals(
     reproduction: &Reproduction,
     reading: Reading,
@@ -51,6 +54,9 @@ pub fn intervals(
 }
 
 /// The points, from large to small ratios: the middles of the intervals where the axis is ακ.
+///
+/// # Errors
+/// The line has another number of intervals than there are names.
 pub fn points(intervals: &[Interval]) -> Result<Vec<LetteredPoint>, ReproductionError> {
     if intervals.len() != NAMES.len() {
         let (found, expected) = (intervals.len(), NAMES.len());

@@ -28,6 +28,9 @@ impl Reproduction {
     }
 
     /// The boundaries in the plane of Figure 4, in both readings, verified.
+    ///
+    /// # Errors
+    /// [`AtlasError`]: they cannot be traced.
     pub(super) fn boundaries(&self) -> Result<&Arc<CollisionAtlas>, AtlasError> {
         if let Some(verified) = self.boundaries.get() {
             return Ok(verified);

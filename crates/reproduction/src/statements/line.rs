@@ -81,6 +81,11 @@ impl Line {
 }
 
 /// The line at `kappa`.
+///
+/// # Errors
+/// [`Stop::Failed`]: a collision cannot be computed. [`Stop::Open`]: the boundaries are in doubt,
+/// because the tracer could not explain something, or because a collision does not have the
+/// switches of its stretch.
 pub fn line(spring: Spring, kappa: f64) -> Result<Line, Stop> {
     let (method, boundaries) = match spring {
         Spring::Reset => ("traced and solved for", traced(kappa)?),

@@ -25,6 +25,9 @@ impl Spring {
     }
 
     /// The collision, by the exact solution where there is one.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn collide(
         self,
         kappa: f64,
@@ -42,6 +45,9 @@ impl Spring {
     }
 
     /// The collision, integrated.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn integrate(
         self,
         kappa: f64,
@@ -56,6 +62,9 @@ impl Spring {
     }
 
     /// The largest elongation of the spring without damping.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn largest_elongation(self, kappa: f64, psi: f64) -> Result<f64, ReproductionError> {
         match self {
             Self::Reset => largest::spring(&self.collide(kappa, psi, 0.0)?)

@@ -119,6 +119,9 @@ impl fmt::Display for Verdict {
 impl Stop {
     /// The finding of a test. If the test leaves the statement open, that is a finding too, with
     /// the verdict "cannot be decided".
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: a collision cannot be computed.
     pub fn into_finding(
         tested: Result<StatementFinding, Self>,
     ) -> Result<StatementFinding, ReproductionError> {
@@ -166,6 +169,9 @@ impl Evidence {
 }
 
 /// The results of `of` for all `inputs`, in their order, on the threads of the current pool.
+///
+/// # Errors
+/// The first error in that order, whatever the number of threads.
 pub fn each<T: Sync, U: Send>(
     inputs: &[T],
     of: impl Fn(&T) -> Result<U, ReproductionError> + Send + Sync,

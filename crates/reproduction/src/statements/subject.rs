@@ -29,6 +29,9 @@ impl Subject {
     }
 
     /// The collision, by the exact solution where there is one.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn collide(
         &self,
         kappa: f64,
@@ -39,6 +42,9 @@ impl Subject {
     }
 
     /// The collision, integrated.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: the collision cannot be computed.
     pub fn integrate(
         &self,
         kappa: f64,
@@ -52,6 +58,10 @@ impl Subject {
     ///
     /// The first test that asks makes a line, on its thread alone: other threads that wait for the
     /// line may be part of the same pool.
+    ///
+    /// # Errors
+    /// [`Stop::Open`]: the boundaries are in doubt. [`Stop::Failed`]: a collision cannot be
+    /// computed.
     pub fn lines(&self) -> Result<[&Line; 2], Stop> {
         let [printed, axis] = Reading::kappas(STIFFNESS);
         Ok([self.line(0, printed)?, self.line(1, axis)?])

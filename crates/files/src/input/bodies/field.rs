@@ -35,11 +35,17 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
 }
 
 /// The object at `place`.
+///
+/// # Errors
+/// The object is missing.
 pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
     object.ok_or_else(|| format!("{place} is missing; expected an object"))
 }
 
 /// The number in the field of `quantity` in the object at `place`.
+///
+/// # Errors
+/// The number is missing or out of range, or the field holds something else.
 pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result<f64, String> {
     let Quantity { name, expected, .. } = quantity;
     let number = match value {
@@ -52,6 +58,9 @@ pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result
 }
 
 /// The vector in the field `name` of the object at `place`, in `unit`.
+///
+/// # Errors
+/// The vector is missing, or does not consist of three numbers.
 pub fn vector(
     place: &str,
     (name, unit): (&str, &str),

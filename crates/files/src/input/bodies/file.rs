@@ -136,11 +136,17 @@ const VELOCITY: (&str, &str) = ("velocity_m_per_s", "in m/s");
 
 impl File {
     /// The file that `text` is.
+    ///
+    /// # Errors
+    /// What is wrong with its layout, and where.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         json::parse(text).map(|Object(file)| file)
     }
 
     /// The bodies that the file describes, under a contact law.
+    ///
+    /// # Errors
+    /// What is wrong, where, and what is expected.
     pub fn resolve(&self, law: Law) -> Result<Bodies, String> {
         let mut spheres = Vec::new();
         for (index, Object(sphere)) in self.spheres.iter().flatten().enumerate() {
@@ -164,6 +170,9 @@ impl File {
     }
 
     /// Refuses other numbers of spheres and walls than two bodies.
+    ///
+    /// # Errors
+    /// What there is, and what is expected.
     pub fn require_two(&self) -> Result<(), String> {
         let two = self.spheres() + usize::from(self.wall.is_some()) == 2 && self.spheres() > 0;
         if two { Ok(()) } else { Err(self.not_two()) }

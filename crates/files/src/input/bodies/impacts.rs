@@ -71,6 +71,9 @@ const MISTAKEN: [&str; 21] = [
 
 impl ImpactReading {
     /// The bodies in the JSON file at `path`, under a law.
+    ///
+    /// # Errors
+    /// [`FileError::Input`]: the file cannot be read, is not JSON, or has other fields than bodies.
     pub fn of_file(path: &Path, law: Law) -> Result<Self, FileError> {
         super::read(path, |file| {
             file.require_two()?;
@@ -85,6 +88,10 @@ impl ImpactReading {
 
     /// The reading with the columns of `header`, where options give velocities and `results` are
     /// the names of the columns of results.
+    ///
+    /// # Errors
+    /// What is wrong with the columns, or with the file if no column mends it, and what is
+    /// expected.
     pub fn with_columns(
         mut self,
         header: &ByteRecord,

@@ -36,6 +36,9 @@ pub enum VelocitiesError {
 impl<T> Velocities<T> {
     /// The form that is given: normal and tangential velocity, or velocity and angle; `None` if
     /// nothing is given.
+    ///
+    /// # Errors
+    /// [`VelocitiesError`]: both forms are given, or half of one.
     pub fn new(given: [Option<T>; 4]) -> Result<Option<Self>, VelocitiesError> {
         match given {
             [None, None, None, None] => Ok(None),
@@ -52,6 +55,9 @@ impl<T> Velocities<T> {
     }
 
     /// The velocities with each value replaced, in the order of [`Self::new`].
+    ///
+    /// # Errors
+    /// That of the first value that cannot be replaced.
     pub fn try_map<U, E>(self, mut map: impl FnMut(T) -> Result<U, E>) -> Result<Velocities<U>, E> {
         Ok(match self {
             Self::Components(normal, tangential) => {

@@ -44,6 +44,9 @@ impl Columns {
         Self { parameters: &[Parameter::Kappa, Parameter::Psi], options: false, results: &LOCATED };
 
     /// The recipe that the columns of `header` make together with the values `given` as options.
+    ///
+    /// # Errors
+    /// What is wrong with the columns, and what is expected.
     pub fn recipe(&self, header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
         let names = names(header, self.results, "kappa,psi")?;
         let column = |parameter: Parameter| {
@@ -64,6 +67,9 @@ impl Columns {
 
 /// The names of the columns of `header`, without blanks around them. A header may be like
 /// `example`.
+///
+/// # Errors
+/// There is no header, two columns have the same name, or one has the name of one of `results`.
 pub fn names<'a>(
     header: &'a ByteRecord,
     results: &[&str],
@@ -95,6 +101,9 @@ pub struct TwoColumns([usize; 2]);
 
 impl TwoColumns {
     /// The columns with these names.
+    ///
+    /// # Errors
+    /// What is wrong with the columns, and what is expected.
     pub fn named(
         header: &ByteRecord,
         axes: &[String; 2],

@@ -38,6 +38,9 @@ impl<R: Read> Portions<R> {
     }
 
     /// The next rows, at most `rows`. There are none at the end.
+    ///
+    /// # Errors
+    /// The source cannot be read, or is not a CSV file of a sensible size.
     pub fn next(&mut self, rows: usize) -> io::Result<Portion<'_>> {
         let used = self.begins.get(self.used).map_or(self.text.len(), |next| self.place(next));
         self.text.drain(..used);

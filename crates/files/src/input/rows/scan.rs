@@ -72,6 +72,9 @@ impl Scan {
     }
 
     /// Scans the next bytes, and adds the rows that begin there to `begins`.
+    ///
+    /// # Errors
+    /// What has no sensible size, and on which line.
     pub fn take(&mut self, mut bytes: &[u8], begins: &mut Vec<Begin>) -> io::Result<()> {
         while let Some((byte, rest)) = bytes.split_first() {
             self.step(*byte, begins)?;
@@ -164,6 +167,9 @@ impl Scan {
     }
 
     /// The end of the text.
+    ///
+    /// # Errors
+    /// The text ends in a quoted field, which begins on the line that is named.
     pub fn end(&mut self, begins: &mut Vec<Begin>) -> io::Result<()> {
         match self.state {
             State::Mark { bytes } => self.end_mark(bytes, begins),
