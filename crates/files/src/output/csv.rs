@@ -122,6 +122,9 @@ impl CsvFile {
     }
 
     /// Ends a row of [`Self::rows`], which are written when they are many.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: they cannot be written.
     pub fn end(&mut self) -> Result<(), FileError> {
         self.rows.end();
         if self.rows.text.len() < MOST_KEPT { Ok(()) } else { self.flush() }
