@@ -4,8 +4,8 @@
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
-//! `meet` where branches meet, and `change` where the verdict changes. `curve` follows special orbits
-//! over two parameters, and `switched` goes over to another branch.
+//! `meet` where branches meet, and `change` where the verdict changes. `curve` follows special
+//! orbits over two parameters, and `switched` goes over to another branch.
 
 mod borders;
 mod change;

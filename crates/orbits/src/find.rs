@@ -46,9 +46,9 @@ impl Orbits {
     /// The orbits of a system.
     ///
     /// # Errors
-    /// [`InvalidValue`] if the parts of the system do not fit together, if its equations jump within
-    /// a mode, where derivatives of a smooth flow do not exist, or if what follows an event is no
-    /// formula.
+    /// [`InvalidValue`] if the parts of the system do not fit together, if its equations jump
+    /// within a mode, where derivatives of a smooth flow do not exist, or if what follows an event
+    /// is no formula.
     pub fn new(system: &System) -> Result<Self, InvalidValue> {
         let compiled = system.compile()?;
         let accepted = system.slides.is_empty();

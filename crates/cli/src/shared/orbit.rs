@@ -60,8 +60,9 @@ pub struct GuessArguments {
     #[arg(conflicts_with_all = ["itinerary", "settle", "start", "mode", "time", "durations"])]
     pub near: Option<PathBuf>,
 
-    /// Of a branch in the file of --near: the orbit of twice the period that begins at a flip, or an
-    /// orbit of the other branch at a branch-point; the first of the kind, or the N-th with KIND:N
+    /// Of a branch in the file of --near: the orbit of twice the period that begins at a flip, or
+    /// an orbit of the other branch at a branch-point; the first of the kind, or the N-th with
+    /// KIND:N
     #[arg(long, value_name = "KIND[:N]", help_heading = "Guess", requires = "near")]
     #[arg(conflicts_with = "set")]
     pub switch: Option<String>,
