@@ -370,13 +370,18 @@ class HybridFamily:
     def __reduce__(self) -> Any:
         return _made_again, (self._made,)
 
+    def _accumulation(self, window: _Window) -> tuple[int, int, int] | None:
+        """In how many of how many runs events accumulate, and the events up to which they should
+        be told apart, unless it is told."""
+        return self._native.accumulation(window) if self._told is None else None
+
     def _up_to(self, events: int | None) -> _native.HybridFamily:
         """The family of an atlas, whose runs are told apart up to so many events."""
         return self._native if events is None else self._native.up_to(events)
 
     def _in(self, window: _Window) -> _native.HybridFamily:
         """The family of an atlas of the window."""
-        return self._up_to(_events_of([self], window, warns=False))
+        return self._up_to(_events_of([self._accumulation(window)], warns=False))
 
     def label(self, x: float, y: float) -> Itinerary:
         """What the run with the parameters x and y does."""
@@ -496,7 +501,7 @@ def trace_family(
     check(progress)
     _check_calls(None, cancelled)
     family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
-    native = family._up_to(_events_of([family], window))
+    native = family._up_to(_events_of([family._accumulation(window)]))
     with reported(progress, f"trace of {family.name}") as report:
         found = native.trace(window, text, _threads(threads), (report, cancelled))
     return finished(found)
@@ -528,11 +533,10 @@ def _survey(
 
 
 def _events_of(
-    families: Iterable[HybridFamily], window: _Window, *, warns: bool = True
+    accumulations: Iterable[tuple[int, int, int] | None], *, warns: bool = True
 ) -> int | None:
     """How many events count in atlases where events accumulate; None if all do."""
-    seen = [one._native.accumulation(window) for one in families if one._told is None]
-    found = max((one for one in seen if one is not None), default=None)
+    found = max((one for one in accumulations if one is not None), default=None)
     if found is None:
         return None
     events, runs, of = found

@@ -151,7 +151,14 @@ def stack_family(
             raise TypeError(f"family({value}) is of type {kind}; expected a HybridFamily")
         return found
 
-    events = _events_of(map(family_at, heights.tolist()), window)
+    def accumulation_at(value: float) -> tuple[int, int, int] | None:
+        try:
+            return family_at(value)._accumulation(window)
+        except Exception as error:
+            error.add_note(f"with the third parameter {value!r}")
+            raise
+
+    events = _events_of(map(accumulation_at, heights.tolist()))
 
     def member(value: float) -> _native.HybridFamily:
         found = family_at(value)
