@@ -5,6 +5,9 @@
 //! 1e-10 and atol = 1e-12. For each it prints the number of events, the right-hand sides and the
 //! evaluations of all guards for an event, and the time.
 
+#[path = "../../solver/tests/solver/dynamic/rooms.rs"]
+mod rooms;
+
 use std::time::Instant;
 
 use stickslip::solver::dynamic::{
@@ -12,14 +15,13 @@ use stickslip::solver::dynamic::{
 };
 use stickslip::solver::{Direction, Dop853, Guard, Number, Options};
 
-/// The guards, and the components that they read.
-struct Parts {
+use rooms::Rooms;
+
+/// Balls that keep 0.8 of their velocity where they bounce; heights and velocities in turn.
+struct Balls {
     guards: Vec<Guard>,
     reads: Vec<usize>,
 }
-
-/// Balls that keep 0.8 of their velocity where they bounce; heights and velocities in turn.
-struct Balls(Parts);
 
 impl ReadableDynamic for Balls {
     type Mode = ();
@@ -29,10 +31,10 @@ impl ReadableDynamic for Balls {
         }
     }
     fn guards(&self, (): ()) -> &[Guard] {
-        &self.0.guards
+        &self.guards
     }
     fn reads(&self, (): ()) -> &[usize] {
-        &self.0.reads
+        &self.reads
     }
     fn guard_values<T: Number>(&self, (): (), _: T, y: &[T], values: &mut [T]) {
         for (value, y) in values.iter_mut().zip(y.chunks_exact(2)) {
@@ -41,38 +43,6 @@ impl ReadableDynamic for Balls {
     }
     fn transition(&self, (): (), guard: usize, _: f64, y: &mut [f64]) {
         (y[2 * guard], y[2 * guard + 1]) = (0.0, -0.8 * y[2 * guard + 1]);
-    }
-}
-
-/// Rooms that are heated towards 3 below 1, and cool towards 0 above 2; temperatures, and then
-/// whether they are heated.
-struct Rooms(Parts);
-
-impl ReadableDynamic for Rooms {
-    type Mode = ();
-    fn field<T: Number>(&self, (): (), _: T, y: &[T], slope: &mut [T]) {
-        let n = y.len() / 2;
-        for room in 0..n {
-            let rate = 1.0 + room as f64 / n as f64;
-            slope[room] = (y[n + room] * 3.0 - y[room]) * rate;
-            slope[n + room] = T::from(0.0);
-        }
-    }
-    fn guards(&self, (): ()) -> &[Guard] {
-        &self.0.guards
-    }
-    fn reads(&self, (): ()) -> &[usize] {
-        &self.0.reads
-    }
-    fn guard_values<T: Number>(&self, (): (), _: T, y: &[T], values: &mut [T]) {
-        let n = y.len() / 2;
-        for room in 0..n {
-            (values[room], values[n + room]) = (-y[room] + 2.0, y[room] - 1.0);
-        }
-    }
-    fn transition(&self, (): (), guard: usize, _: f64, y: &mut [f64]) {
-        let n = y.len() / 2;
-        y[n + guard % n] = if guard < n { 0.0 } else { 1.0 };
     }
 }
 
@@ -117,17 +87,15 @@ fn measure<S: DynamicSystem<Mode = ()>>(name: &str, system: &S, state: &[f64], e
 fn balls(n: usize) {
     let state: Vec<_> = (0..n).flat_map(|i| [1.0 + i as f64 / n as f64, 0.0]).collect();
     let guards = || vec![Guard::new(Direction::Falling); n];
-    let balls = || Balls(Parts { guards: guards(), reads: (0..n).map(|i| 2 * i).collect() });
+    let balls = || Balls { guards: guards(), reads: (0..n).map(|i| 2 * i).collect() };
     measure(&format!("{n} balls"), &balls(), &state, 2.0);
     measure(&format!("{n} balls, black box"), &BlackBox(balls()), &state, 2.0);
 }
 
 fn rooms(n: usize, end: f64) {
-    let state: Vec<_> = (0..2 * n).map(|i| if i < n { 0.0 } else { 1.0 }).collect();
-    let guards = || vec![Guard::new(Direction::Falling); 2 * n];
-    let rooms = || Rooms(Parts { guards: guards(), reads: (0..n).collect() });
-    measure(&format!("{n} thermostats"), &rooms(), &state, end);
-    measure(&format!("{n} thermostats, black box"), &BlackBox(rooms()), &state, end);
+    let (rooms, state) = (Rooms::new(n), Rooms::cold(n));
+    measure(&format!("{n} thermostats"), &rooms, &state, end);
+    measure(&format!("{n} thermostats, black box"), &BlackBox(rooms), &state, end);
 }
 
 fn main() {

@@ -124,14 +124,15 @@ impl Beside<'_> {
     fn along(&self, graph: &mut Graph, chosen: &[usize]) -> Along {
         let sliding: Vec<usize> = (0..chosen.len()).filter(|&i| chosen[i] == SLIDING).collect();
         let is_above = |i: &usize| matches!(chosen[*i], ABOVE | ABOVE_RELEASED);
-        let below: usize = (0..chosen.len()).filter(is_above).map(|i| 1 << i).sum();
-        let above = |i: usize| below | 1 << i;
+        // The corner on the sides of the surfaces that are not slid along.
+        let beside: usize = (0..chosen.len()).filter(is_above).map(|i| 1 << i).sum();
+        let above = |i: usize| beside | 1 << i;
         let mut shares = vec![None; chosen.len()];
-        let mut slopes = self.corners[below].clone();
+        let mut slopes = self.corners[beside].clone();
         if sliding.is_empty() {
             return Along { slopes, shares };
         }
-        let base = &self.rates[below];
+        let base = &self.rates[beside];
         let matrix: Vec<Vec<Formula>> = sliding
             .iter()
             .map(|&i| {
@@ -155,9 +156,9 @@ impl Beside<'_> {
             // What a surface consists of stays where it is, bit for bit.
             let is_surface = |i: usize| {
                 let same = |corner: usize| self.rates[corner][i] == field(corner);
-                same(below) && sliding.iter().all(|&j| same(above(j)))
+                same(beside) && sliding.iter().all(|&j| same(above(j)))
             };
-            let here = field(below);
+            let here = field(beside);
             *slope = if sliding.iter().any(|&i| is_surface(i)) {
                 graph.constant(0.0)
             } else {

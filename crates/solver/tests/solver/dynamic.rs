@@ -16,6 +16,7 @@ mod chains;
 mod fixed_states;
 mod large;
 mod planted;
+mod rooms;
 mod same;
 
 use stickslip_solver::dynamic::{

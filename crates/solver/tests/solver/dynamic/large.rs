@@ -1,11 +1,10 @@
 //! Many components, and many guards.
 
 use allocation_counter::measure;
-use stickslip_solver::dynamic::{
-    DynamicRun, DynamicStart, DynamicSwitch, ReadableDynamic, run_dynamic,
-};
-use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Number, Options, StepSize};
+use stickslip_solver::dynamic::{DynamicRun, DynamicStart, DynamicSwitch, run_dynamic};
+use stickslip_solver::{Direction, Dop853, Dopri5, Guard, Method, Options, StepSize};
 
+use super::rooms::Rooms;
 use super::{Plain, go};
 
 /// A chain of `n` masses with fixed ends; the first half of the state are places, the second half
@@ -114,43 +113,12 @@ fn steps_without_event_allocate_nothing() {
     assert!(allocations(Dop853, 20) < 100);
 }
 
-/// Rooms that are heated towards 3 below 1, and cool towards 0 above 2; temperatures, and then
-/// whether they are heated.
-struct Rooms(Vec<Guard>);
-
-impl ReadableDynamic for Rooms {
-    type Mode = ();
-
-    fn field<T: Number>(&self, (): (), _: T, y: &[T], slope: &mut [T]) {
-        let n = y.len() / 2;
-        for room in 0..n {
-            let rate = 1.0 + room as f64 / n as f64;
-            slope[room] = (y[n + room] * 3.0 - y[room]) * rate;
-            slope[n + room] = T::from(0.0);
-        }
-    }
-    fn guards(&self, (): ()) -> &[Guard] {
-        &self.0
-    }
-    fn guard_values<T: Number>(&self, (): (), _: T, y: &[T], values: &mut [T]) {
-        let n = y.len() / 2;
-        for room in 0..n {
-            (values[room], values[n + room]) = (-y[room] + 2.0, y[room] - 1.0);
-        }
-    }
-    fn transition(&self, (): (), guard: usize, _: f64, y: &mut [f64]) {
-        let n = y.len() / 2;
-        y[n + guard % n] = if guard < n { 0.0 } else { 1.0 };
-    }
-}
-
 /// All guards are evaluated and bounded at once, so that the work of an event is linear in their
 /// number. It was quadratic: each guard bounded all.
 #[test]
 fn the_evaluations_of_an_event_do_not_grow_with_the_number_of_guards() {
     for n in [4, 40, 200] {
-        let rooms = Rooms(vec![Guard::new(Direction::Falling); 2 * n]);
-        let state: Vec<_> = (0..2 * n).map(|i| if i < n { 0.0 } else { 1.0 }).collect();
+        let (rooms, state) = (Rooms::new(n), Rooms::cold(n));
         let start = DynamicStart { mode: (), s: 0.0, state: &state };
         let mut switches: Vec<DynamicSwitch<()>> = Vec::new();
         let options = Options { max_switches: 10_000, ..Options::with_tolerance(1e-10) };
