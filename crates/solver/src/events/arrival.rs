@@ -29,7 +29,8 @@ impl<S: System> Examination<'_, S> {
             if here && self.phase.zero_by_rounding[guard] {
                 continue;
             }
-            if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {
+            let same = (SAME * step.h).max(HERE * self.drift(step.h));
+            if self.notes_of(guard).any(|note| note.s >= s - same) {
                 continue;
             }
             let arrival = self.arrival(guard, (step, step.h, &step.y1), ARRIVES, None);
@@ -102,7 +103,7 @@ impl<S: System> Examination<'_, S> {
         if largest > 0.0 && there.abs() > self.near_zero(elapsed) * largest {
             return None;
         }
-        let hidden = self.hidden_at(guard, step, elapsed, y);
+        let hidden = self.hidden_at(guard, (step, elapsed, y));
         let room = &mut *self.room;
         let (mut slope, mut moved) = (room.state(), room.state());
         system.field(mode, s, y, &mut slope);
@@ -129,6 +130,7 @@ impl<S: System> Examination<'_, S> {
         if !crosses || !direction.fires_from(behind) {
             return None;
         }
+        let slope = self.slope_beyond(guard, (step, elapsed, y), (hidden, slope));
         let error = event.map_or(0.0, |event| self.error_of(event));
         let hidden = roundings * (hidden + slope * self.drift(elapsed)) + slope * error;
         (there.abs() <= hidden).then_some(Crossed { slope, jump: false, sign: behind.signum() })

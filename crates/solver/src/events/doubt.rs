@@ -1,8 +1,10 @@
 //! By how much rounding may move the place of an event, and hide what a guard is there.
 
 use crate::events::along_step::{rounding, scales};
+use crate::events::arrival::HERE;
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
+use crate::events::first_guard::TOGETHER;
 use crate::events::isolate::noise;
 use crate::events::phase::NEAR_ZERO;
 use crate::method::{StepOf, Store};
@@ -12,6 +14,13 @@ use crate::system::System;
 const CLOSE: f64 = 1e-6;
 /// The part of what surely exceeds noise that it may well be.
 const PART: f64 = 0.25;
+/// How much more than one step's rounding may have added up in the state, from step to step and
+/// from event to event.
+pub(crate) const ADDED: f64 = 2.0;
+/// A guard has left what rounding hides if it has changed by so many times that much.
+const LEAVES: f64 = 64.0;
+/// The longest part of a usual step over which that is tried.
+const FARTHEST: f64 = 1e-3;
 
 impl<S: System> Examination<'_, S> {
     /// The error of the place of an event: how far rounding of time and state, and the value that
@@ -22,8 +31,10 @@ impl<S: System> Examination<'_, S> {
         if event.elapsed == 0.0 || jump {
             return drift;
         }
-        let hidden = self.hidden_at(event.guard, &event.step, event.elapsed, &event.state);
-        let error = (hidden + event.residual) / slope;
+        let place = (&event.step, event.elapsed, &event.state);
+        let hidden = self.hidden_at(event.guard, place);
+        let slope = self.slope_beyond(event.guard, place, (hidden, slope));
+        let error = (ADDED * hidden + event.residual) / slope;
         drift + if error.is_finite() { error } else { 0.0 }
     }
 
@@ -32,10 +43,49 @@ impl<S: System> Examination<'_, S> {
         self.drift + 5.0 * f64::EPSILON * elapsed
     }
 
+    /// The time within which guards may belong to the instant of an event. Whether they do, their
+    /// errors say.
+    pub(crate) fn together(&self, elapsed: f64, h: f64) -> f64 {
+        (TOGETHER * h).max(HERE * self.drift(elapsed))
+    }
+
     /// The part of a guard's largest value below which it may be zero. In a phase that is hardly
     /// longer than rounding of time, it hides more.
     pub(crate) fn near_zero(&self, elapsed: f64) -> f64 {
         NEAR_ZERO.max(16.0 * self.drift(elapsed) / elapsed)
+    }
+
+    /// The slope of a guard where it leaves what rounding hides. Over a longer way, the slope may be
+    /// quite another one, such as the one that is taken for a `guess`.
+    pub(crate) fn slope_beyond(
+        &mut self,
+        guard: usize,
+        (step, elapsed, y): (&StepOf<S::State>, f64, &S::State),
+        (hidden, guess): (f64, f64),
+    ) -> f64 {
+        let (system, at, s) = (self.system, (self.phase.mode, guard), step.s + elapsed);
+        let (mut moved, mut rate) = (self.room.state(), self.room.state());
+        system.field(at.0, s, y, &mut rate);
+        self.statistics.field += 1;
+        let mut slope = guess.abs();
+        let mut reach = LEAVES * hidden / slope;
+        while reach > 0.0 && reach <= FARTHEST * self.usual {
+            let mut value = |ahead: f64| {
+                S::State::shifted(&mut moved, y, &rate, ahead);
+                self.statistics.guards += 1;
+                self.room.value(system, at, s + ahead, &moved)
+            };
+            let seen = ((value(reach) - value(-reach)) / (2.0 * reach)).abs();
+            // Written so that NaN ends the search.
+            if !(seen < 0.5 * slope) {
+                break;
+            }
+            slope = seen.max(slope / LEAVES);
+            reach = LEAVES * hidden / slope;
+        }
+        self.room.give(moved);
+        self.room.give(rate);
+        slope
     }
 
     /// The effect of rounding on a guard at a place of `step`: of time and state, and within the
@@ -43,9 +93,7 @@ impl<S: System> Examination<'_, S> {
     pub(crate) fn hidden_at(
         &mut self,
         guard: usize,
-        step: &StepOf<S::State>,
-        elapsed: f64,
-        y: &S::State,
+        (step, elapsed, y): (&StepOf<S::State>, f64, &S::State),
     ) -> f64 {
         let (system, at, s) = (self.system, (self.phase.mode, guard), step.s + elapsed);
         let (mut scale, mut slope) = (self.room.state(), self.room.state());

@@ -4,6 +4,7 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::by_bounds::Sight;
+use crate::events::doubt::ADDED;
 use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
@@ -261,7 +262,7 @@ impl<S: System> Examination<'_, S> {
                 let (theta, Bracket { low, high, .. }) = (event.elapsed / h, crossing.bracket);
                 // In the bracket it crosses zero once, so that its sign shows on which side it is.
                 let before = crossing.sign * search.there[guard];
-                if low > (1.0 + TOGETHER) * theta
+                if (low - theta) * h > self.together(event.elapsed, event.elapsed)
                     || high >= theta
                         && before > self.near_zero(event.elapsed) * largest::<S>(guard, values)
                 {
@@ -325,7 +326,7 @@ impl<S: System> Examination<'_, S> {
             _ if self.notes_of(guard).next().is_none() => {
                 let place = (&found.step, found.elapsed, &found.state);
                 // At the start of the step, it may have been noted on the step before.
-                let crossed = self.arrival(guard, place, 1.0, Some(found)).filter(|crossed| {
+                let crossed = self.arrival(guard, place, ADDED, Some(found)).filter(|crossed| {
                     !may_wait
                         || self.phase.zero_orders[guard] == 0
                             && crossed.sign * self.phase.values[guard] > 0.0
@@ -377,7 +378,7 @@ impl<S: System> Examination<'_, S> {
         values: &[PerGuard<S, f64>; 6],
         h: f64,
     ) {
-        if self.phase.count() == 1 || event.elapsed < (1.0 - TOGETHER) * h {
+        if self.phase.count() == 1 || h - event.elapsed > self.together(event.elapsed, h) {
             return;
         }
         for guard in 0..self.phase.count() {
@@ -387,7 +388,7 @@ impl<S: System> Examination<'_, S> {
                 && event.crossed[guard].is_none()
                 && self.notes_of(guard).next().is_none()
                 && let place = (&event.step, event.elapsed, &event.state)
-                && let Some(crossed) = self.arrival(guard, place, 1.0, Some(event))
+                && let Some(crossed) = self.arrival(guard, place, ADDED, Some(event))
             {
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {

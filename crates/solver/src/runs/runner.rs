@@ -114,7 +114,7 @@ pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
         room: Room::new(n),
         nodes: [row(), row(), row(), row(), row(), row()],
         sure: List::of(0, true),
-        instant: Instant::new(),
+        instant: Instant::new(n),
     };
     runner.phase.enter(system, mode, (s, state), &mut runner.fired)?;
     // A clock that is due at the start fires there.

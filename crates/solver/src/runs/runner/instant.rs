@@ -6,6 +6,8 @@
 //! otherwise it is reported as preempted. A guard that bounds the domain of its mode
 //! ([`Direction::Below`]) is evaluated again.
 
+use smallvec::SmallVec;
+
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
 use crate::events::first_guard::TOGETHER;
@@ -30,8 +32,12 @@ struct Pending<Mode> {
 /// What is known about the guards at one instant, by their places.
 pub(super) struct Instant<S: System> {
     pending: PerGuard<S, Option<Pending<S::Mode>>>,
-    /// The modes in which guards have acted.
-    acted: PerGuard<S, Option<S::Mode>>,
+    /// The modes in which guards have acted, and how they have crossed zero.
+    acted: PerGuard<S, Option<(S::Mode, Crossed)>>,
+    /// The state before the first transition.
+    origin: S::State,
+    /// The transitions so far: modes, guards, and the modes to which they lead.
+    transitions: SmallVec<[(S::Mode, usize, S::Mode); 4]>,
     /// The last modes and guards of a chain that comes close to the limit.
     chain: Vec<(S::Mode, usize)>,
 }
@@ -46,8 +52,14 @@ const HIDES: f64 = 16.0;
 const LONGEST_CYCLE: usize = 8;
 
 impl<S: System> Instant<S> {
-    pub(super) fn new() -> Self {
-        Self { pending: List::of(0, None), acted: List::of(0, None), chain: Vec::new() }
+    pub(super) fn new(n: usize) -> Self {
+        Self {
+            pending: List::of(0, None),
+            acted: List::of(0, None),
+            origin: S::State::room(n),
+            transitions: SmallVec::new(),
+            chain: Vec::new(),
+        }
     }
 
     /// Remembers the last events of a chain; `left` more events are allowed.
@@ -86,18 +98,24 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.state.set(&event.state);
         self.rest.parts_mut().fill(0.0);
         let (mode, count) = (self.phase.mode, self.phase.count());
-        let Instant { pending, acted, .. } = &mut self.instant;
+        let Instant { pending, acted, origin, transitions, .. } = &mut self.instant;
         pending.fit(count, None);
         acted.fit(count, None);
         if self.clock.phase > 0.0 {
             acted.parts_mut().fill(None);
+            transitions.clear();
+        }
+        if transitions.is_empty() {
+            origin.set(&event.state);
         }
         // What has just been noted on this step is of this instant too.
         let rounding = HIDES * self.clock.drift();
         let since = self.clock.s - rounding.max(TOGETHER * event.step.h);
         for note in self.notes.iter().filter(|note| note.s >= since) {
             let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
-            (0..count).filter(noted).for_each(|guard| acted[guard] = Some(mode));
+            for guard in (0..count).filter(noted) {
+                acted[guard] = Some((mode, note.crossed[guard].unwrap_or(Crossed::AT_ONCE)));
+            }
         }
         for guard in 0..count {
             let of = self.phase.guards[guard];
@@ -177,7 +195,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.phase.enter(self.system, to, (s, &self.state), &mut self.fired)?;
         self.room.guards = self.phase.count();
         self.statistics.guards += 1;
-        self.instant.acted[guard] = Some(from);
+        self.instant.acted[guard] = Some((from, crossed));
+        self.instant.transitions.push((from, guard, to));
         let count = self.phase.count().max(self.instant.pending.parts().len());
         self.instant.pending.fit(count, None);
         self.instant.acted.fit(count, None);
@@ -307,36 +326,62 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             } else {
                 // One that is clearly beyond has not been located.
                 let located = |it: &Pending<_>| below && it.crossed.slope.is_finite();
-                self.instant.pending[guard].filter(located).map(|it| it.mode)
+                self.instant.pending[guard].filter(located).map(|it| (it.mode, it.crossed))
             };
             if self.phase.zero_orders[guard] > 0 || !below && crossed.is_none() {
                 continue;
             }
             // A guard that has crossed stands on its zero, whatever its rounding is, while nothing
             // changes its value. A guard of another mode does not.
-            let left = match crossed.map(|mode| self.left(event, act, mode, guard)) {
-                Some(None) => continue,
+            let left = match crossed.map(|crossed| self.left(event, act, crossed, guard)) {
+                Some(None) if !below => continue,
                 left => left.flatten().unwrap_or(0.0),
             };
-            let slope = if guard == act.guard { act.crossed.slope } else { 0.0 };
-            let drift = if slope.is_finite() { slope * self.clock.drift() } else { 0.0 };
-            if (value - left).abs() <= self.hidden(event, guard) + drift {
+            let hidden = self.hidden(event, guard);
+            let away = value.abs().min((value - left).abs());
+            // What is hidden is some roundings of the terms of the guard.
+            let near = away <= NEAR_ZERO / f64::EPSILON * hidden;
+            if away <= hidden || near && away <= hidden + self.unsettled(guard) {
                 self.phase.forgive(guard);
             }
         }
     }
 
-    /// The value that is left where a guard has crossed zero in `mode`, 0 if it has jumped. The
+    /// The value that is left where a guard has crossed zero in a mode, 0 if it has jumped. The
     /// result is `None` if the active mode does not have this guard.
-    fn left(&mut self, event: &Event<S>, act: &Act<S>, mode: S::Mode, guard: usize) -> Option<f64> {
+    fn left(
+        &mut self,
+        event: &Event<S>,
+        act: &Act<S>,
+        (mode, crossed): (S::Mode, Crossed),
+        guard: usize,
+    ) -> Option<f64> {
         let sense = self.sense(event, mode, guard);
         let left = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
         self.statistics.guards += 1;
         // The guard that has acted stands on its zero only if it was close to it.
         let size = act.largest.max(act.crossed.slope * event.step.h);
-        let is_near = !act.crossed.jump && left.abs() <= NEAR_ZERO * size;
-        let stands = guard != act.guard || is_near;
+        let stands = !crossed.jump && (guard != act.guard || left.abs() <= NEAR_ZERO * size);
         (sense != 0.0).then_some(if stands { sense * left } else { 0.0 })
+    }
+
+    /// By how much a guard would differ if the instant had come later by the rounding of its time,
+    /// and everything had acted there as it has.
+    fn unsettled(&mut self, guard: usize) -> f64 {
+        let (system, late) = (self.system, self.clock.s + self.clock.drift());
+        let Some(&(mode, ..)) = self.instant.transitions.first() else { return 0.0 };
+        let (mut slope, mut y) = (self.room.state(), self.room.state());
+        system.field(mode, self.clock.s, &self.instant.origin, &mut slope);
+        S::State::shifted(&mut y, &self.instant.origin, &slope, late - self.clock.s);
+        let mut acts = self.instant.transitions.iter();
+        let same = acts.all(|&(from, by, to)| system.transition(from, by, late, &mut y) == to);
+        let value = self.room.value(system, (self.phase.mode, guard), late, &y);
+        self.statistics.field += 1;
+        self.statistics.guards += 1;
+        self.room.give(slope);
+        self.room.give(y);
+        let change = (value - self.phase.values[guard]).abs();
+        if same && change.is_finite() { change } else { 0.0 }
     }
 
     /// The value that a guard may have by rounding where it is zero at this instant.
@@ -356,14 +401,15 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// domain and is beyond zero. A guard that has crossed zero and that the mode does not have
     /// when its turn comes is reported, and does not act.
     fn next_to_act(&mut self, event: &Event<S>) -> Option<usize> {
+        let is_edge = |it: &Pending<_>| it.guard.direction() != Direction::Below;
         loop {
             let mut next: Option<(i16, usize)> = None;
+            let waits = self.instant.pending.parts().iter().flatten().any(is_edge);
             for guard in 0..self.instant.pending.parts().len() {
-                let pending = self.instant.pending[guard];
-                let edge = pending.filter(|pending| pending.guard.direction() != Direction::Below);
+                let edge = self.instant.pending[guard].filter(is_edge);
                 let rank = match (edge, self.phase.guards.parts().get(guard).copied()) {
                     (Some(pending), _) => pending.guard.rank(),
-                    (None, Some(of)) if self.is_violated(event, guard) => of.rank(),
+                    (None, Some(of)) if self.is_violated(event, guard, waits) => of.rank(),
                     _ => continue,
                 };
                 let rank = (-i16::from(rank), guard);
@@ -388,24 +434,37 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     }
 
     /// Whether a guard bounds the domain of the mode and is beyond zero: clearly, or where it has
-    /// just crossed zero.
-    fn is_violated(&mut self, event: &Event<S>, guard: usize) -> bool {
+    /// just crossed zero. If another guard `waits` for its turn, one that stands on its zero and
+    /// falls counts as well, since the next step would find it too late.
+    fn is_violated(&mut self, event: &Event<S>, guard: usize, waits: bool) -> bool {
         let value = self.phase.values[guard];
         if self.phase.guards[guard].direction() != Direction::Below {
             return false;
         }
-        if value < 0.0 && self.phase.zero_orders[guard] == 0 {
+        let forgiven = self.phase.zero_by_rounding[guard];
+        if self.phase.zero_orders[guard] > 0 && !forgiven {
+            return false;
+        }
+        if value < 0.0 && !forgiven {
             return true;
         }
-        // It has crossed zero where it is now, whatever its rounding is.
-        let Some(Pending { mode, .. }) = self.instant.pending[guard] else { return false };
-        self.sense(event, mode, guard) == 1.0 && {
-            let there = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
-            self.statistics.guards += 1;
-            let hidden = self.hidden(event, guard);
-            (value - there).abs() <= hidden
-                && (mode == self.phase.mode || self.falls(guard, value, hidden))
+        let pending = self.instant.pending[guard].map(|pending| pending.mode);
+        let crossed = pending.filter(|&mode| self.sense(event, mode, guard) == 1.0);
+        if !waits && crossed.is_none() {
+            return false;
         }
+        let hidden = self.hidden(event, guard);
+        // It has crossed zero where it is now, whatever its rounding is.
+        let stands = crossed.is_some_and(|mode| {
+            self.statistics.guards += 1;
+            let there = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
+            (value - there).abs() <= hidden
+        });
+        if stands && crossed == Some(self.phase.mode) {
+            return true;
+        }
+        let is_zero = stands || waits && (forgiven || value <= hidden + self.unsettled(guard));
+        is_zero && self.falls(guard, value, hidden)
     }
 
     /// Whether a guard with this value falls where the active mode goes on.
