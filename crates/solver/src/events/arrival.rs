@@ -11,6 +11,8 @@ const REACH: f64 = 1e-3;
 /// The number of roundings within which a guard counts as zero there. Roundings add up from event
 /// to event.
 const ARRIVES: f64 = 16.0;
+/// The errors of time within which a guard shows nothing.
+const SHOWS: f64 = 16.0;
 /// The roundings of time that may hide what a guard does.
 const HIDES: f64 = 65536.0;
 /// A guard that acts is not examined again within this many roundings of time.
@@ -104,12 +106,13 @@ impl<S: System> Examination<'_, S> {
             return None;
         }
         let hidden = self.hidden_at(guard, (step, elapsed, y));
+        let shortest = SHOWS * self.drift(elapsed);
         let room = &mut *self.room;
         let (mut slope, mut moved) = (room.state(), room.state());
         system.field(mode, s, y, &mut slope);
         self.statistics.field += 1;
         // On a step that was cut very short, rounding hides what the guard does.
-        let mut reach = REACH * elapsed.max(f64::EPSILON * self.usual);
+        let mut reach = (REACH * elapsed.max(f64::EPSILON * self.usual)).max(shortest);
         let longest = (REACH * self.usual).max(HIDES * f64::EPSILON * s.abs());
         let (behind, ahead, shows) = loop {
             S::State::shifted(&mut moved, y, &slope, -reach);

@@ -63,6 +63,11 @@ impl<S: System> Examination<'_, S> {
         for guard in 0..self.phase.count() {
             let (value, zero_order) = (self.phase.values[guard], self.phase.zero_orders[guard]);
             beginnings[guard] = Beginning { theta: 0.0, value, zero_order };
+            let bounds = self.phase.guards[guard].direction() == Direction::Below;
+            if bounds && value < 0.0 && zero_order == 0 {
+                // Whatever it does on the step, it is beyond its zero already.
+                statuses[guard] = Status::Fires(Crossing::at_start(1.0));
+            }
         }
         self.pass_forgiven(step, &mut beginnings, &mut statuses, &mut end_values);
         // The event before that changed nothing.

@@ -206,6 +206,13 @@ impl<S: System> Examination<'_, S> {
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
+                // Rounding hides how it leaves its zero on a step as short as this.
+                Verdict::Flat if step.h < self.trial.h => {
+                    match values.iter().map(|value| sign * value).find(|&value| value != 0.0) {
+                        Some(value) if value < 0.0 => Crossing::at_start(sign),
+                        _ => continue,
+                    }
+                }
                 Verdict::Flat => {
                     return Err(RunError::GuardIdenticallyZero { guard, s: step.s });
                 }

@@ -157,11 +157,6 @@ impl Case {
                     .map(|run| (run.outcome, run.mode, std::array::from_fn(|i| run.state[i])))
             }
         };
-        if std::env::var_os("INSTANTS_LOG").is_some() {
-            for one in &log.seen {
-                println!("{form:?} {one:?}");
-            }
-        }
         let (outcome, mode, state) = match ended {
             Ok(ended) => ended,
             Err(error) => return Some(Fault::Error(error)),
