@@ -101,6 +101,43 @@ pub(crate) fn start_rate<S: System>(
     rate
 }
 
+/// The side of its value at the start of `step` on which a guard first shows beyond rounding, or 0
+/// if it does not on the step. The flow is followed to the second order.
+pub(crate) fn first_side<S: System>(
+    system: &S,
+    (mode, guard): (S::Mode, usize),
+    step: &StepOf<S::State>,
+    statistics: &mut Statistics,
+    room: &mut Room<S>,
+) -> f64 {
+    let (s, y) = (step.s, &step.y0);
+    let (hidden, count) = rounding(system, (mode, guard), (s, y), (s, y), room);
+    let (mut slope, mut ahead, mut moved) = (room.state(), room.state(), room.state());
+    system.field(mode, s, y, &mut slope);
+    let start = room.value(system, (mode, guard), s, y);
+    statistics.field += 1;
+    statistics.guards += count + 1;
+    let mut reach = f64::EPSILON * s.abs().max(step.h);
+    let mut side = 0.0;
+    while reach <= step.h && side == 0.0 {
+        S::State::shifted(&mut moved, y, &slope, reach);
+        system.field(mode, s + reach, &moved, &mut ahead);
+        moved.shift(&ahead, 0.5 * reach);
+        moved.shift(&slope, -0.5 * reach);
+        let change = room.value(system, (mode, guard), s + reach, &moved) - start;
+        statistics.field += 1;
+        statistics.guards += 1;
+        if change.abs() > 4.0 * hidden {
+            side = change.signum();
+        }
+        reach *= 4.0;
+    }
+    room.give(slope);
+    room.give(ahead);
+    room.give(moved);
+    side
+}
+
 /// The sizes of time and state whose rounding counts at a place (`s`, `y`) of `step`: the largest
 /// on the step, since sums of such terms lead there.
 pub(crate) fn scales<V: Store>(step: &StepOf<V>, s: f64, y: &V, scale: &mut V) -> f64 {

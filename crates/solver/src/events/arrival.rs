@@ -12,7 +12,7 @@ const REACH: f64 = 1e-3;
 /// to event.
 const ARRIVES: f64 = 16.0;
 /// The errors of time within which a guard shows nothing.
-const SHOWS: f64 = 16.0;
+pub(crate) const SHOWS: f64 = 16.0;
 /// The roundings of time that may hide what a guard does.
 const HIDES: f64 = 65536.0;
 /// A guard that acts is not examined again within this many roundings of time.

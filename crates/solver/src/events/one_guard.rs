@@ -6,13 +6,13 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{
-    AlongStep, EnclosedAlongStep, dense_output, repeated_step, start_rate,
+    AlongStep, EnclosedAlongStep, dense_output, first_side, repeated_step, rounding, start_rate,
 };
 use crate::events::arrival::SAME;
 use crate::events::by_bounds::Sight;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
-    Beginning, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_enclosed_sign,
+    Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_enclosed_sign,
     last_sign, noise,
 };
 use crate::events::notices::{FEW, Noticed};
@@ -122,20 +122,34 @@ impl<S: System> Examination<'_, S> {
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
         let found = self.isolate_from::<M>(guard, step, values, beginning)?;
-        let zero_by_rounding = self.phase.zero_by_rounding[guard] && beginning.zero_order > 0;
-        if found.is_none() && zero_by_rounding && !self.leaves(guard, step) {
+        let at_start = beginning.theta == 0.0;
+        let forgiven = at_start && self.phase.zero_by_rounding[guard] && beginning.zero_order > 0;
+        if found.is_some() || !at_start || beginning.zero_order > 0 && !forgiven {
+            return Ok(found);
+        }
+        let at = (self.phase.mode, guard);
+        let rate = if forgiven {
+            start_rate(self.system, at, step, self.statistics, self.room)
+        } else {
+            let (s, y) = (step.s, &step.y0);
+            let (hidden, count) = rounding(self.system, at, (s, y), (s, y), self.room);
+            self.statistics.guards += count;
+            if values[0].abs() > hidden {
+                return Ok(None);
+            }
+            values[0].signum()
+        };
+        if rate == 0.0 {
             // It is not a zero that can be divided out, so its sign counts.
             let beginning = Beginning { zero_order: 0, ..beginning };
             return self.isolate_from::<M>(guard, step, values, beginning);
         }
-        Ok(found)
-    }
-
-    /// Whether a guard leaves its value at the start of `step` with a rate that rounding does not
-    /// hide.
-    fn leaves(&mut self, guard: usize, step: &StepOf<S::State>) -> bool {
-        let at = (self.phase.mode, guard);
-        start_rate(self.system, at, step, self.statistics, self.room) != 0.0
+        // It leaves its zero on one side, and shows first on the other: rounding hides how it comes
+        // back.
+        let comes_back = self.phase.guards[guard].direction().fires_from(rate)
+            && first_side(self.system, at, step, self.statistics, self.room) == -rate;
+        let bracket = Bracket { low: 0.0, high: 1.0, guess: 0.0 };
+        Ok(comes_back.then(|| Status::Fires(Crossing { sign: rate, bracket })))
     }
 
     /// Decides about a guard whose zero at the start is certain, if it is said to have one.

@@ -4,8 +4,8 @@
 //! a guard goes. A ball above a floor at −1, for example, bounces for ever with heights of the last
 //! digit. Twelve such phases in a row are an accumulation, each shorter than 1e-4 of the run; six
 //! are, if the phases before became shorter and shorter. So are six transitions of one guard at one
-//! instant behind such phases. What is hidden gives no data: the place is extrapolated from the
-//! phases that rounding shows.
+//! instant behind such phases, and twelve behind any short phase. What is hidden gives no data: the
+//! place is extrapolated from the phases that rounding shows.
 
 use crate::options::Options;
 
@@ -167,16 +167,23 @@ impl Zeno {
     /// The place where switches accumulate whose phases have become shorter and shorter until
     /// rounding hid them, where the last switch was one of a chain at one instant `s`.
     pub(crate) fn behind_chain(&self, s: f64) -> Option<Accumulation> {
-        (self.alone.1 >= Self::HALF).then(|| self.behind_hidden(s)).flatten()
+        let goes_on = (self.alone.1 >= Self::HALF).then(|| self.behind_hidden(s)).flatten();
+        let last = self.last();
+        let stays = self.alone.1 >= self.gaps.len() && self.count > 0 && self.is_brief(last, s);
+        goes_on.or(stays.then_some(Accumulation { s, error: last }))
+    }
+
+    /// The last phase that rounding shows.
+    fn last(&self) -> f64 {
+        self.gaps[(self.count + self.gaps.len() - 1) % self.gaps.len()]
     }
 
     /// The place where brief phases accumulate that rounding does not show any more at `s`.
     fn behind_hidden(&self, s: f64) -> Option<Accumulation> {
-        let last = self.gaps[(self.count + self.gaps.len() - 1) % self.gaps.len()];
         // The first phase was another one.
         let few = if self.count > Self::FEW { Self::FEW } else { 2 };
         let count = if self.count >= self.gaps.len() { self.gaps.len() } else { few };
-        let (left, error) = self.left(count).filter(|_| self.is_brief(last, s))?;
+        let (left, error) = self.left(count).filter(|_| self.is_brief(self.last(), s))?;
         let found = s.max(self.shown + left);
         Some(Accumulation { s: found, error: error + left + (found - self.shown - left) })
     }

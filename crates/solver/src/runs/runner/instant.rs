@@ -46,6 +46,9 @@ pub(super) struct Instant<S: System> {
 /// is tried, and about the last.
 const CLOSE: f64 = 1e-6;
 const FAR: f64 = 1e-2;
+/// A guard that goes no farther in a phase than so many times what rounding hides does not know when
+/// it comes back.
+const CONFUSES: f64 = 16.0;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
 const HIDES: f64 = 16.0;
 /// A cycle of transitions at one instant is named if it is no longer than this.
@@ -243,7 +246,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     fn hides(&mut self, event: &Event<S>, guard: usize, crossed: Crossed) -> bool {
         let phase = self.clock.phase;
         let brief = phase > 0.0 && self.zeno.is_brief(phase, self.clock.s);
-        brief && crossed.slope * phase <= self.hidden(event, guard)
+        brief && crossed.slope * phase <= CONFUSES * self.hidden(event, guard)
     }
 
     /// Finds the guards that a transition carries across zero, of those that see it.
