@@ -110,6 +110,10 @@ class Surface:
     tangential_damping_ratio: float | None = None
     #: Damping ratio as particle codes define it: the damping over the critical one.
     critical_damping_ratio: float | None = None
+    #: Ratio k2/k1 of the stiffnesses of a hysteretic normal force, falling and growing.
+    unloading_stiffness_ratio: float | None = None
+    #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
+    hardening_per_m: float | None = None
     #: Coefficient of normal restitution, instead of a damping.
     e_n: float | None = None
     #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.

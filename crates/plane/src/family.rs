@@ -91,6 +91,8 @@ impl CollisionPlane {
     /// [`InvalidValue`]: a value that no collision can have.
     pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidValue> {
         let sides = [kappa, psi].map(|(low, high)| Range { low, high });
+        let expected = "a finite number above 0";
+        InvalidValue::check("kappa", kappa.0, expected, kappa.0 > 0.0)?;
         let first = Contact::new(kappa.0, psi.0, damping)?;
         Contact::new(kappa.1, psi.1, damping)?;
         let sheet = Sheet { sides, chart: Chart::of(sides[0], sides[1]), integrated: false };

@@ -12,7 +12,7 @@ use crate::input::parameter::Parameter;
 pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
     let Range { low, high } = parse(text)?;
     match (parameter.check(low), parameter.check(high)) {
-        (Ok(low), Ok(high)) => Ok(Range { low, high }),
+        (Ok(low), Ok(high)) if low > 0.0 => Ok(Range { low, high }),
         _ => Err(ZERO.to_owned()),
     }
 }

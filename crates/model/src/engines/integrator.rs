@@ -334,7 +334,8 @@ impl Collider {
         let onset = contact.damping() / (contact.kappa() * contact.psi());
         // A first phase so much shorter than a step is lost in the rounding of the guard that ends
         // it.
-        if contact.damping() > 0.0 && onset < BRIEF {
+        let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
+        if damped && onset < BRIEF {
             options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
         }
         Ok(options)

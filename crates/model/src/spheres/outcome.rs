@@ -107,7 +107,7 @@ impl Encounter {
         let wall = self.partners.iter().find(|partner| partner.sphere.is_none());
         let kinetic = |motions: [&Motion; 2]| one.energy(motions[0]) + two.energy(motions[1]);
         let normal_unit_j = m * self.normal_m_per_s * self.normal_m_per_s;
-        let slope = pair.surface.friction / alpha;
+        let slope = pair.friction_unit() / alpha;
         let tangential_unit_j =
             if self.tangent.is_some() { alpha * slope * slope * normal_unit_j } else { 0.0 };
         let ledger = &collision.energy;
@@ -140,7 +140,7 @@ impl Encounter {
         let in_si = |switch: &Switch| {
             let of_paper = impact.contact.obeys_paper();
             let spring_m = of_paper.then(|| impact.spring_m(switch.spring));
-            let force = surface.friction * impact.force_unit_n() * impact.contact.kappa();
+            let force = surface.friction * impact.force_unit_n() * impact.contact.force_unit();
             let pull_n = spring_m.map_or(force * switch.spring, |spring_m| {
                 surface.tangential_stiffness_kg_per_s2 * spring_m
             });
