@@ -286,7 +286,8 @@ _UNITS = {
     "work_of_wall_j": ("work of the wall", "J"),
     "sliding_j": ("energy lost in slip", "J"),
     "damping_j": ("energy taken by damping", "J"),
-    "spring_left_j": ("energy left in the spring, or lost in stick", "J"),
+    "tangential_damping_j": ("energy taken by the tangential dashpot in stick", "J"),
+    "spring_left_j": ("energy left in the spring, or lost to it in stick", "J"),
     "compression_left_j": ("energy left in the compression", "J"),
     "unbalanced_j": ("what is missing in the balance of energy", "J"),
 }
@@ -356,6 +357,7 @@ class Impacts(Tabular):
         self.work_of_wall_j = numbers["work_of_wall_j"]
         self.sliding_j = numbers["sliding_j"]
         self.damping_j = numbers["damping_j"]
+        self.tangential_damping_j = numbers["tangential_damping_j"]
         self.spring_left_j = numbers["spring_left_j"]
         self.compression_left_j = numbers["compression_left_j"]
         self.unbalanced_j = numbers["unbalanced_j"]
@@ -443,6 +445,8 @@ def impact(
     engine, shape = (method, rtol, atol), normal.shape
     count = _threads(threads)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
+    if pair.surface.friction == 0:
+        chosen = _laws.arguments(_laws.without_friction(pair.law), 0.0)
 
     def made(
         found: tuple[dict[str, Any], Floats],

@@ -32,7 +32,7 @@ use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step}
 use equations::Equations;
 
 /// Number of components.
-pub const STATE: usize = 10;
+pub const STATE: usize = 11;
 /// u, the n-th root of the overlap.
 pub const U: usize = 0;
 /// v = dx/dt where the damping a is below 1, otherwise a³(v + u^{p−d}/a).
@@ -54,6 +54,8 @@ pub const RATE: usize = 7;
 pub const FAR_GAP: usize = 8;
 /// Its rate.
 pub const FAR_RATE: usize = 9;
+/// Tangential energy over σ² taken by the dashpot in stick.
+pub const DASHPOT: usize = 10;
 
 /// Number of guards.
 pub const GUARDS: usize = 5;
@@ -245,6 +247,11 @@ impl GeneralContact {
         f64::from(n) * y[U].powi(n - 1)
     }
 
+    /// Tangential energy that the dashpot has taken in stick.
+    pub fn taken_by_dashpot(&self, y: &State<STATE>) -> f64 {
+        self.equations.taken_by_dashpot(array(y))
+    }
+
     /// Scaled normal force F.
     pub fn normal_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
         self.equations.normal_force(mode.stage, array(y))
@@ -337,7 +344,7 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
             }};
         }
         match (mode.regime, mode.progress) {
-            (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE DASHPOT),
             (Regime::Stick, Progress::Settled) => take!(stick; GAP RATE FAR_GAP FAR_RATE),
             (Regime::Stick, _) => take!(first_stick;),
         }

@@ -45,6 +45,45 @@ pub fn find(name: &str) -> Option<Preset> {
     Some(preset)
 }
 
+/// Why a law of particle codes that has this name, or a part of it, is not computed.
+///
+/// ```
+/// use stickslip_contact::presets;
+///
+/// assert!(presets::refusal("granular/jkr").is_some_and(|why| why.starts_with("adhesion")));
+/// assert_eq!(presets::refusal("gran/hooke/history"), None);
+/// ```
+pub fn refusal(name: &str) -> Option<&'static str> {
+    const ADHESION: &str = "adhesion is not computed: with it a contact begins and ends at pull-off, \
+                            with a force that jumps, and slow bodies never separate";
+    const ROLLING: &str = "rolling and twisting friction are not computed: they are torques, which act \
+                           on the relative spin and not on the velocity of the surfaces; in one \
+                           impact they change spins by about μ_r/μ of what sliding does";
+    const THORNTON: &str = "Thornton's elastic-plastic force is not computed: it is Hertz' up to a \
+                            yield velocity and linear above; walton-braun and \
+                            walton-braun/hardening are hysteretic forces that are computed";
+    const KNOWN: [(&str, &str); 13] = [
+        ("jkr", ADHESION),
+        ("dmt", ADHESION),
+        ("adhesi", ADHESION),
+        ("cohesi", ADHESION),
+        ("rolling", ROLLING),
+        ("twisting", ROLLING),
+        ("sds", ROLLING),
+        ("epsd", ROLLING),
+        ("cdt", ROLLING),
+        ("marshall", ROLLING),
+        ("thornton", THORNTON),
+        ("elastoplastic", THORNTON),
+        ("mdr", THORNTON),
+    ];
+    let words = name.to_lowercase();
+    let is_part = |word: &str| {
+        words.match_indices(word).any(|(at, _)| !words[..at].ends_with(char::is_alphanumeric))
+    };
+    KNOWN.into_iter().find(|(word, _)| is_part(word)).map(|(_, why)| why)
+}
+
 /// Names that look like `name`, the likeliest first, at most three.
 ///
 /// ```

@@ -6,7 +6,7 @@ use stickslip_solver::Number;
 
 use super::exponents::Exponents;
 use super::{
-    Beginning, DAMPING, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage,
+    Beginning, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage,
     T as TIME, U, V, W,
 };
 use crate::contact::Contact;
@@ -205,6 +205,11 @@ impl Equations {
         [Some(1.0 - spring), None]
     }
 
+    /// Tangential energy that the dashpot has taken.
+    pub fn taken_by_dashpot(&self, y: &[f64; STATE]) -> f64 {
+        y[DASHPOT] * self.velocity_unit * self.velocity_unit
+    }
+
     /// Reduced tangential velocity w.
     #[inline(always)]
     pub fn velocity<T: Number>(&self, y: &[T; STATE]) -> T {
@@ -288,6 +293,10 @@ impl Equations {
         let pull = self.pull(mode.stage, u, y);
         slope[W] = u[e.last + of.shared] * pull * (-f64::from(e.n) / self.velocity_unit);
         slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
+        if self.dashpot > 0.0 {
+            let per_w = f64::from(e.n) * self.dashpot / self.velocity_unit;
+            slope[DASHPOT] = u[e.last + e.d] * y[W] * y[W] * per_w;
+        }
         slope
     }
 

@@ -244,6 +244,7 @@ impl Collider {
         collision.energy = EnergyLedger {
             tangential_initial: 0.5 * contact.psi() * contact.psi(),
             tangential_final: 0.5 * collision.final_velocity * collision.final_velocity,
+            tangential_damping: 0.0,
             sliding,
             spring_left: 0.0,
             normal_initial: 0.5,

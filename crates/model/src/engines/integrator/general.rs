@@ -153,12 +153,14 @@ impl Account<'_> {
             End::Force => [0.0, compression],
             End::Overlap => [compression, 0.0],
         };
+        let tangential_damping = system.taken_by_dashpot(y);
         let normal_final = 0.5 * rate * rate;
         collision.energy = EnergyLedger {
             tangential_initial,
             tangential_final,
             sliding,
-            spring_left: tangential_initial - tangential_final - sliding,
+            tangential_damping,
+            spring_left: tangential_initial - tangential_final - sliding - tangential_damping,
             normal_initial: 0.5,
             normal_final,
             damping: y[DAMPING] + taken,
