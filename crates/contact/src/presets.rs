@@ -221,9 +221,7 @@ const YADE_CHECKED: &str = "read in the source (HertzMindlin.cpp and Viscoelasti
 const YADE_UNDAMPED: &str = "read in the source, with the integrator's own damping 0; the law has no \
                              dashpots";
 
-use Damping::{
-    Hardening, Hysteretic, Linear as Constant, None as Undamped, Tsuji, Viscoelastic,
-};
+use Damping::{Hardening, Hysteretic, Linear as Constant, None as Undamped, Tsuji, Viscoelastic};
 use HistoryOf::{Displacement, Force};
 use Normal::{Hertz, Linear};
 use Tangential::{Constant as Spring, Mindlin};

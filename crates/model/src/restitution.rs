@@ -256,9 +256,8 @@ fn keywords(name: &str) -> &'static [(&'static str, Formula, &'static str)] {
             ("damping tsuji, newer", Formula::EffectiveMass, NEWER),
             ("damping coeff_restitution", Formula::Linear, LAMMPS),
         ],
-        [_, "hooke", "hysteresis", ..] | ["mercury", "LinearPlasticViscoelasticSlidingFriction"] => {
-            &[]
-        }
+        [_, "hooke", "hysteresis", ..]
+        | ["mercury", "LinearPlasticViscoelasticSlidingFriction"] => &[],
         ["liggghts", "hooke", ..] => &[("coefficientRestitution", Formula::Linear, LIGGGHTS)],
         ["liggghts", "hertz", ..] => &[("coefficientRestitution", Formula::Hertz, LIGGGHTS)],
         ["mercury", "LinearViscoelasticSlidingFriction"] => {

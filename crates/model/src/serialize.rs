@@ -84,10 +84,7 @@ impl Serialize for EnergyAccount {
         object.serialize_field("work_of_wall", &self.work_of_wall_j)?;
         object.serialize_field("sliding", &self.sliding_j)?;
         object.serialize_field("damping", &self.damping_j)?;
-        match self.tangential_damping_j {
-            0.0 => object.skip_field("tangential_damping")?,
-            taken => object.serialize_field("tangential_damping", &taken)?,
-        }
+        object.serialize_field("tangential_damping", &self.tangential_damping_j)?;
         object.serialize_field("spring_left", &self.spring_left_j)?;
         object.serialize_field("compression_left", &self.compression_left_j)?;
         object.serialize_field("unbalanced", &self.unbalanced_j())?;

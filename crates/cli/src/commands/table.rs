@@ -100,7 +100,10 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
     let settings = TableSettings { window: window(arguments)?, bound: *bound, regions: *regions };
     settings.validate().map_err(refused)?;
     let outputs: Vec<_> = out.iter().map(|out| ("--out", Some(out.as_path()))).collect();
-    require_different(&outputs, &[("--bodies", bodies.as_deref()), law::file(arguments.law.law.as_deref())])?;
+    require_different(
+        &outputs,
+        &[("--bodies", bodies.as_deref()), law::file(arguments.law.law.as_deref())],
+    )?;
     tables::require_prefix(prefix).map_err(refused)?;
     let formats = out.iter().map(|out| TableFormat::of(out)).collect::<Result<Vec<_>, _>>()?;
     let files = out.iter().map(|out| OutputFile::create(out)).collect::<Result<Vec<_>, _>>()?;

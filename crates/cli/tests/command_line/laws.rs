@@ -88,7 +88,11 @@ fn hysteretic_forces_are_a_law_like_others() {
     let found: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert!((found["eps_n"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{}", ran.stderr);
     let other = directory.run(&format!("{impact} walton-braun/hardening"));
-    assert!(other.stderr.contains("unloading_stiffness_ratio = 4 has no meaning"), "{}", other.stderr);
+    assert!(
+        other.stderr.contains("unloading_stiffness_ratio = 4 has no meaning"),
+        "{}",
+        other.stderr
+    );
     // Without friction, and without a spring.
     for (name, at) in [("friction", 0.0), ("tangential_stiffness_kg_per_s2", 0.0)] {
         let mut surface = surface.clone();
@@ -125,10 +129,13 @@ fn no_friction_and_no_spring_are_limits() {
     assert!(eps_t[..2] == [1.0, 1.0] && eps_t[2] < 0.9, "{}", ran.stdout);
     assert!(ran.stdout.contains("out of range; expected a finite number, 0 or above"));
     for (command, why) in [
-        ("collide --kappa 0 --psi 0.5 --damping 0.2 --law gran/hooke/history \
-          --tangential-damping 1", "or a law without history"),
+        (
+            "collide --kappa 0 --psi 0.5 --damping 0.2 --law gran/hooke/history \
+          --tangential-damping 1",
+            "or a law without history",
+        ),
         ("trace --kappa 1:2 --ratio 0.5:1 --mu 0 --out atlas.json", "without friction"),
-        ("trace --kappa 0:2 --psi 0.5:1 --out atlas.json", "above 0"),
+        ("trace --kappa 0:2 --psi 0.5:1 --out atlas.json", "LO > 0"),
         ("map --kappa 1:2 --ratio 0.5:1 --mu 0 --out map.csv", "without friction"),
     ] {
         let refused = directory.run(command);

@@ -6,8 +6,8 @@ use stickslip_solver::Number;
 
 use super::exponents::Exponents;
 use super::{
-    Beginning, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage,
-    T as TIME, U, V, W,
+    Beginning, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING,
+    STATE, Stage, T as TIME, U, V, W,
 };
 use crate::contact::Contact;
 use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side, is_open};
@@ -314,12 +314,7 @@ impl Equations {
 
     /// The right-hand side of the normal motion, and the rate of v.
     #[inline(always)]
-    fn normal<T: Number>(
-        &self,
-        stage: Stage,
-        u: &Powers<T>,
-        y: &[T; STATE],
-    ) -> ([T; STATE], T) {
+    fn normal<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> ([T; STATE], T) {
         let e = self.exponents;
         let n = f64::from(e.n);
         let v = self.rate(u, y);
@@ -512,7 +507,8 @@ impl Equations {
     /// rounding of 0. One that falls there is on its way to a graze.
     pub fn is_at_limit(&self, mode: Mode, y: &[f64; STATE]) -> bool {
         let u = &powers(y[U]);
-        let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared] * self.push(mode.stage, u, y);
+        let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared]
+            * self.push(mode.stage, u, y);
         let near = (y[GAP] * self.scale).abs() < AT_LIMIT * limit;
         mode.regime == Regime::Stick && near && y[RATE] >= 0.0
     }

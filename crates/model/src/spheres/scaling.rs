@@ -175,9 +175,13 @@ impl BodyPair {
             Tangential::Mindlin => tangential_stiffness_kg_per_s2 * length.sqrt(),
         };
         let kappa = stiffness * time * time / (alpha * self.effective_mass_kg);
+        // A stiffness below the range of numbers is not 0.
+        let ok = kappa > 0.0 || stiffness == 0.0;
+        InvalidValue::check("kappa", kappa, POSITIVE, ok)?;
         let psi = tangential_m_per_s / normal_m_per_s * alpha / self.friction_unit();
         let damping = units.damping(damping_time_s);
-        let contact = Contact::new(kappa, psi, damping)?.with_law(law, self.tangential_damping())?;
+        let contact =
+            Contact::new(kappa, psi, damping)?.with_law(law, self.tangential_damping())?;
         Ok(Impact {
             contact: if friction > 0.0 { contact } else { contact.without_friction() },
             pair: *self,

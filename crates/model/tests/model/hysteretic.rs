@@ -1,7 +1,7 @@
 //! Hysteretic normal forces, and the limits of no spring and no friction.
 
-use stickslip_model::spheres::{BodyPair, Constants, Forces, Material, Surface};
 use stickslip_model::spheres::{Body, Encounter, ImpactReport, Sphere};
+use stickslip_model::spheres::{BodyPair, Constants, Forces, Material, Surface};
 use stickslip_model::{
     Contact, Damping, End, Engine, HistoryOf, Law, Normal, Tangential, presets, restitution,
 };
@@ -60,8 +60,7 @@ fn the_normal_restitution_is_in_closed_form() {
         hardening_per_m: Some(3e4),
         ..Constants::default()
     };
-    let steel =
-        Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let sphere = Sphere::homogeneous(1e-3, &steel);
     let forces = Forces::new(preset.law, &constants).unwrap();
     let pair = BodyPair::new(&sphere, &Body::Sphere(sphere), forces).unwrap();
@@ -74,7 +73,8 @@ fn the_normal_restitution_is_in_closed_form() {
     // The same k₂ at one velocity.
     let e_n = Constants { hardening_per_m: None, e_n: Some(0.6), ..constants };
     let e_n = Constants { e_n_at_m_per_s: Some(0.1), ..e_n };
-    let pair = BodyPair::new(&sphere, &Body::Sphere(sphere), Forces::new(preset.law, &e_n).unwrap());
+    let pair =
+        BodyPair::new(&sphere, &Body::Sphere(sphere), Forces::new(preset.law, &e_n).unwrap());
     let found = collide(pair.unwrap().impact(0.1, 0.2).unwrap().contact).eps_n;
     assert!((found - 0.6).abs() < 1e-12);
 }
@@ -189,8 +189,7 @@ fn no_stiffness_is_the_limit_of_small_ones() {
 /// Without friction the tangential velocity, and with it every spin, is kept.
 #[test]
 fn impacts_without_friction_keep_the_tangential_velocity() {
-    let steel =
-        Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface =
         Surface { friction: 0.0, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
     let sphere = Sphere::homogeneous(0.02, &steel);
@@ -205,7 +204,10 @@ fn impacts_without_friction_keep_the_tangential_velocity() {
     assert_eq!((report.itinerary().as_str(), outcome.switches.len()), ("+", 0));
     assert_eq!(outcome.motions[0].velocity_m_per_s.x, 3.0);
     assert_eq!(outcome.motions[0].spin_rad_per_s.norm(), 0.0);
-    assert!((outcome.motions[0].velocity_m_per_s.z + outcome.motions[1].velocity_m_per_s.z + 2.0).abs() < 1e-12);
+    assert!(
+        (outcome.motions[0].velocity_m_per_s.z + outcome.motions[1].velocity_m_per_s.z + 2.0).abs()
+            < 1e-12
+    );
     assert!(outcome.energy.unbalanced_j().abs() < 1e-12 * outcome.energy.kinetic_before_j);
     let rough = Surface { friction: 0.3, ..surface };
     assert!((collide(meet(&rough).contact()).eps_n - outcome.eps_n).abs() < 1e-12);

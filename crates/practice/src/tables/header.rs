@@ -2,8 +2,8 @@
 
 use std::fmt::{Display, Write};
 
-use stickslip_model::{InvalidValue, Law};
 use stickslip_model::spheres::Surface;
+use stickslip_model::{InvalidValue, Law};
 use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{ACROSS, ALONG};

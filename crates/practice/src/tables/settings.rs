@@ -122,7 +122,8 @@ impl TableSettings {
     /// # Errors
     /// [`TableError::Settings`] names the first that is out of its range.
     pub fn validate(&self) -> Result<(), TableError> {
-        let finest = if self.window.is_integrated() { Self::FINEST_INTEGRATED } else { Self::FINEST };
+        let finest =
+            if self.window.is_integrated() { Self::FINEST_INTEGRATED } else { Self::FINEST };
         let coarsest = Self::COARSEST;
         if !(finest..=coarsest).contains(&self.bound) {
             let expected = format!("{finest:e} to {coarsest:e}");

@@ -65,7 +65,8 @@ pub fn step(
     let longest = LONGEST * f64::max(duration, undamped_contact_time(contact.law()));
     let most = (longest / dt + 10.0).min(MOST_STEPS);
     let mut rule = ForceRule::new(contact, dt, scheme);
-    let mut state = State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0, greatest: 0.0 };
+    let mut state =
+        State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0, greatest: 0.0 };
     let mut steps = 0;
     let mut stiffness: f64 = 0.0;
     loop {
