@@ -315,6 +315,9 @@ fn turned_boosted_and_exchanged(impacts: usize) {
     assert_eq!(exchanged.0, 0.0, "the same bits");
 }
 
+/// The name of a result, how it is read off an outcome, and the largest error.
+type Compared = (&'static str, fn(&Outcome) -> f64, f64);
+
 /// Thirteen angles of a sphere on a plane, simulated with the displacement history that the code of
 /// Chung and Ooi has.
 #[test]
@@ -343,7 +346,7 @@ fn a_benchmark_of_thirteen_angles_is_met() {
         let (collision, _) = Engine::Auto.collide(encounter.contact()).unwrap();
         encounter.outcome(&collision)
     };
-    let results: [(&str, fn(&Outcome) -> f64, f64); 3] = [
+    let results: [Compared; 3] = [
         ("e_t_of_the_centre", |it| it.observed.centre_e_t.unwrap(), 0.011),
         ("spin_rad_per_s", |it| it.motions[0].spin_rad_per_s.norm(), 8.0),
         ("rebound_angle_deg", |it| it.observed.patch_rebound_angle_rad.to_degrees(), 1.01),
