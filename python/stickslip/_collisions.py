@@ -292,7 +292,8 @@ class Collisions(Tabular):
         self.itinerary_codes: NDArray[np.int32] = columns["itinerary"].reshape(shape)
         #: The itineraries that occur, in the order in which they do.
         self.itineraries: tuple[str, ...] = tuple(columns["itineraries"])
-        #: The switches of collision i, counted in C order, are `switches[offsets[i]:offsets[i + 1]]`.
+        #: The switches of collision i, counted in C order, are `switches[offsets[i]:offsets[i +
+        #: 1]]`.
         self.offsets: NDArray[np.int64] = columns["offsets"]
         #: Why collisions have no result, by their index in C order.
         self.failures: dict[int, str] = dict(columns["failures"])
@@ -484,8 +485,8 @@ def collide(
     """One collision, with every switch.
 
     kappa: scaled stiffness, 0 or above. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with
-    the friction mu, 0 or above, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as for
-    homogeneous spheres. damping: scaled damping, 0 or above; or e_n: the coefficient of normal
+    the friction mu, 0 or above, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as
+    for homogeneous spheres. damping: scaled damping, 0 or above; or e_n: the coefficient of normal
     restitution that it makes, above 0, at most 1. method: "exact", "dop853", "dopri5", or "auto",
     which is exact unless a tolerance is given. rtol, atol: tolerances of a step of the
     integrators. law: the contact law, a name of `laws` or its terms; the paper's if there is none.
@@ -560,7 +561,8 @@ def _rubbing(
         return _psi(psi, ratio, mu, alpha), *law
     if not smooth.all():
         raise ValueError("mu has values of 0 and others; expected a call of its own for mu = 0")
-    return _psi(psi, ratio, np.ones_like(real("mu", mu)), alpha), _laws.without_friction(law[0]), 0.0
+    ones = np.ones_like(real("mu", mu))
+    return _psi(psi, ratio, ones, alpha), _laws.without_friction(law[0]), 0.0
 
 
 def _strict(errors: OnError) -> bool:

@@ -103,8 +103,8 @@ class Surface:
     mindlin_stiffness_kg_per_s2_m0_5: float | None = None
     #: Damping of the normal force in kg/(s mᵉ), with e = 0, 1/2 or 1/4 as the law says.
     damping_coefficient: float | None = None
-    #: Damping c of the normal force without unit, of Tsuji's law or of a linear one; half of it, or c
-    #: over the root of 5, is critical_damping_ratio.
+    #: Damping c of the normal force without unit, of Tsuji's law or of a linear one; half of it, or
+    #: c over the root of 5, is critical_damping_ratio.
     damping_ratio: float | None = None
     #: Ratio of tangential and normal damping; 0 without it.
     tangential_damping_ratio: float | None = None

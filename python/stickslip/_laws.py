@@ -14,8 +14,9 @@ from stickslip import _native
 
 #: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz"),
 #: damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening"), tangential
-#: ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping (bool),
-#: end ("force", "overlap"), coulomb_test ("total", "spring"). A term that is not given is that of the paper's law.
+#: ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
+#: (bool), end ("force", "overlap"), coulomb_test ("total", "spring"). A term that is not given is
+#: that of the paper's law.
 Law: TypeAlias = str | Mapping[str, Any]
 
 

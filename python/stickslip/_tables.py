@@ -182,8 +182,8 @@ def table(
 
     kappa, psi: intervals, above 0. damping, e_n, law, tangential_damping: as in `collide`. bound:
     1e-12 to 1e-3, and with another law than the paper's from 1e-9. regions: whether the table has
-    the regions of the atlas too. threads: 1 to 1024, or None for one for each core; results do not depend on
-    it. progress: called now and then with the steps done and all that are known; True shows a bar on
+    the regions of the atlas too. threads: 1 to 1024, or None for one for each core; results do not
+    depend on it. progress: called now and then with the steps done and all that are known; True shows a bar on
     stderr.
 
     Raises ValueError for parameters out of range, and ComputationError where the bound is not

@@ -62,8 +62,8 @@ impl Contact {
     ///
     /// # Errors
     /// [`InvalidValue`]: the tangential damping is out of its range, also for κ = 0 and hysteretic
-    /// forces, the damping has no effect in this law, a contact with this damping never ends, or the
-    /// force is hysteretic and the spring depends on the overlap.
+    /// forces, the damping has no effect in this law, a contact with this damping never ends, or
+    /// the force is hysteretic and the spring depends on the overlap.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
         let Self { damping, kappa, .. } = self;
         let ok = tangential_damping >= 0.0;

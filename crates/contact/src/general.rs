@@ -5,8 +5,8 @@
 //!
 //! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
 //!   compression on, history over √x is carried, whose equation is polynomial again.
-//! - While a hysteretic force falls, uⁿ is the overlap less what is left of it where the force ends:
-//!   the equations are those of a force without hysteresis and with another stiffness.
+//! - While a hysteretic force falls, uⁿ is the overlap less what is left of it where the force
+//!   ends: the equations are those of a force without hysteresis and with another stiffness.
 //! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.

@@ -50,8 +50,9 @@ fn hysteretic_power(law: Law) -> f64 {
     }
 }
 
-/// ε_n of a law with the scaled damping a: in closed form for linear and hysteretic forces and where
-/// a contact with Tsuji's damping of Hertz' force lasts until x = 0, otherwise by [`Engine::Auto`].
+/// ε_n of a law with the scaled damping a: in closed form for linear and hysteretic forces and
+/// where a contact with Tsuji's damping of Hertz' force lasts until x = 0, otherwise by
+/// [`Engine::Auto`].
 ///
 /// ```
 /// use stickslip_model::{presets, restitution};

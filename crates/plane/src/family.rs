@@ -280,9 +280,9 @@ impl CollisionPlane {
     /// Refuses planes with a hysteretic force in which a slip may graze its end at greatest
     /// compression, where this force has a kink.
     ///
-    /// With the stiffness k = dF/dx a slip is left where s κ w − dF/dt falls through 0, and that has
-    /// the rate F (k − κ) at greatest compression: where κ is between both stiffnesses, there is a
-    /// minimum without a slope of 0.
+    /// With the stiffness k = dF/dx a slip is left where s κ w − dF/dt falls through 0, and that
+    /// has the rate F (k − κ) at greatest compression: where κ is between both stiffnesses, there
+    /// is a minimum without a slope of 0.
     ///
     /// # Errors
     /// [`InvalidValue`] has the interval of κ and those that are expected.

@@ -72,7 +72,8 @@ pub struct TableArguments {
     #[command(flatten)]
     pub law: LawArguments,
 
-    /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3, with other laws than the paper's from 1e-9
+    /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3, with other laws than the paper's from
+    /// 1e-9
     #[arg(long, value_name = "E", help_heading = "Table", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option, default_value = "1e-8")]
     pub bound: f64,

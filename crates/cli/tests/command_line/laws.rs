@@ -59,7 +59,8 @@ fn restitution_is_an_input() {
     assert!(refused.stderr.contains("no damping of this law has e_n = 0.5"), "{}", refused.stderr);
 }
 
-/// Walton's and Braun's law: as a collision, as bodies, with ε_n as an input, and where it is refused.
+/// Walton's and Braun's law: as a collision, as bodies, with ε_n as an input, and where it is
+/// refused.
 #[test]
 fn hysteretic_forces_are_a_law_like_others() {
     let one = "collide --kappa 3 --psi 0.4 --law walton-braun --e-n 0.5 --format json";

@@ -42,7 +42,8 @@ pub struct BodyPair {
     /// The properties of the surfaces. In other laws than the paper's, the stiffness is the
     /// constant K in kg/(s² √m) where it is Mindlin's, and the damping time is the damping γ over
     /// the elastic constant, in their units. Where the force is hysteretic, the damping time is
-    /// k₂/k₁ − 1, or what that is in 1/m of the greatest overlap; see [`Constants`](super::forces::Constants).
+    /// k₂/k₁ − 1, or what that is in 1/m of the greatest overlap; see
+    /// [`Constants`](super::forces::Constants).
     pub surface: Surface,
     /// The contact law.
     #[cfg_attr(feature = "serde", serde(default))]

@@ -436,8 +436,8 @@ fn names_are_unique_and_laws_are_what_they_say() {
     assert_eq!(presets::find("hooke"), None);
 }
 
-/// What the dashpot takes in stick, by a quadrature of the course: for laws of all kinds, among them
-/// dashpots alone and those beside the Coulomb test.
+/// What the dashpot takes in stick, by a quadrature of the course: for laws of all kinds, among
+/// them dashpots alone and those beside the Coulomb test.
 #[test]
 fn the_dashpot_takes_what_its_force_does() {
     for name in [

@@ -121,7 +121,8 @@ fn spins_and_velocities_together() {
     assert!(spin.value < 60.0, "{best:?}");
 }
 
-/// The spins alone, of up to 613 rad/s: the spring is that of the velocities, to within the scatter.
+/// The spins alone, of up to 613 rad/s: the spring is that of the velocities, to within the
+/// scatter.
 #[test]
 fn spins_alone_have_one_best_spring() {
     let (bodies, _) = oblique::aluminium_oxide(Law::PAPER);
