@@ -139,7 +139,6 @@ fn numbers_out_of_range_missing_or_of_another_type() {
     }
     for (path, name) in [
         ("/spheres/0/radius_m", "spheres[0].radius_m = 0.0 "),
-        ("/surface/friction", "surface.friction = 0.0 "),
         ("/spheres/0/moment_of_inertia_kg_m2", "spheres[0].moment_of_inertia_kg_m2 = 0.0 "),
     ] {
         let zero = with(&file, path, Some(json!(0)));
