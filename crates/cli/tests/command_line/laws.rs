@@ -137,7 +137,7 @@ fn no_friction_and_no_spring_are_limits() {
         ),
         ("trace --kappa 1:2 --ratio 0.5:1 --mu 0 --out atlas.json", "without friction"),
         ("trace --kappa 0:2 --psi 0.5:1 --out atlas.json", "LO > 0"),
-        ("map --kappa 1:2 --ratio 0.5:1 --mu 0 --out map.csv", "without friction"),
+        ("map --kappa 1:2 --ratio 0.5:1 --mu 0 --size 4x4 --out map.csv", "without friction"),
     ] {
         let refused = directory.run(command);
         assert_eq!(refused.code, 2, "{command}");
