@@ -292,7 +292,8 @@ class Collisions(Tabular):
         self.itinerary_codes: NDArray[np.int32] = columns["itinerary"].reshape(shape)
         #: The itineraries that occur, in the order in which they do.
         self.itineraries: tuple[str, ...] = tuple(columns["itineraries"])
-        #: The switches of collision i, counted in C order, are `switches[offsets[i]:offsets[i + 1]]`.
+        #: The switches of collision i, counted in C order, are `switches[offsets[i]:offsets[i +
+        #: 1]]`.
         self.offsets: NDArray[np.int64] = columns["offsets"]
         #: Why collisions have no result, by their index in C order.
         self.failures: dict[int, str] = dict(columns["failures"])
@@ -483,9 +484,9 @@ def collide(
 ) -> Collision:
     """One collision, with every switch.
 
-    kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with
-    the friction mu, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as for
-    homogeneous spheres. damping: scaled damping, 0 or above; or e_n: the coefficient of normal
+    kappa: scaled stiffness, 0 or above. psi: reduced impact ratio, above 0; or ratio: g_t/g_n, with
+    the friction mu, 0 or above, 0.4 without it, and the tangential inertia alpha, 2/7 without it, as
+    for homogeneous spheres. damping: scaled damping, 0 or above; or e_n: the coefficient of normal
     restitution that it makes, above 0, at most 1. method: "exact", "dop853", "dopri5", or "auto",
     which is exact unless a tolerance is given. rtol, atol: tolerances of a step of the
     integrators. law: the contact law, a name of `laws` or its terms; the paper's if there is none.
@@ -503,8 +504,8 @@ def collide(
     >>> round(collide(63, 0.5, e_n=0.8).eps_n, 12)
     0.8
     """
-    psi = _psi(psi, ratio, mu, alpha)
     damping = _laws.damping_of(damping, e_n, law)
+    psi, law, tangential_damping = _rubbing(psi, ratio, mu, alpha, (law, tangential_damping))
     for name, value in (("kappa", kappa), ("psi", psi), ("damping", damping)):
         if np.ndim(value):
             raise TypeError(f"{name} is an array; expected a number, or use collide_many")
@@ -545,6 +546,23 @@ def _psi(
                 raise ValueError(f"{name} = {value!r} has no effect with psi; expected with ratio")
         return psi
     return psi_of_ratio(ratio, 0.4 if mu is None else mu, 2 / 7 if alpha is None else alpha)
+
+
+def _rubbing(
+    psi: ArrayLike | None,
+    ratio: ArrayLike | None,
+    mu: ArrayLike | None,
+    alpha: ArrayLike | None,
+    law: tuple[Law | None, float],
+) -> tuple[Any, Law | None, float]:
+    """psi, and the law with its tangential damping: one without tangential force if mu is 0."""
+    smooth = np.ravel(real("mu", 0.4 if mu is None else mu)) == 0
+    if ratio is None or not smooth.any():
+        return _psi(psi, ratio, mu, alpha), *law
+    if not smooth.all():
+        raise ValueError("mu has values of 0 and others; expected a call of its own for mu = 0")
+    ones = np.ones_like(real("mu", mu))
+    return _psi(psi, ratio, ones, alpha), _laws.without_friction(law[0]), 0.0
 
 
 def _strict(errors: OnError) -> bool:
@@ -634,7 +652,7 @@ def eps_t_and_switch_count(
 
     As `eps_t`; where a collision has no result, the number of switches is -1.
     """
-    psi = _psi(psi, ratio, mu, alpha)
+    psi, law, tangential_damping = _rubbing(psi, ratio, mu, alpha, (law, tangential_damping))
     _, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
     with keeping(lambda left: left[:2]):
@@ -670,7 +688,7 @@ def collide_many(
     >>> many.switches[many.offsets[1] : many.offsets[2]]["to"].tolist()
     ['stick', 'slip', 'stick', 'slip', 'stick', 'slip']
     """
-    psi = _psi(psi, ratio, mu, alpha)
+    psi, law, tangential_damping = _rubbing(psi, ratio, mu, alpha, (law, tangential_damping))
     given, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
     def first(left: dict[str, Any]) -> Collisions:

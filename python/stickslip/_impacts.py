@@ -103,13 +103,17 @@ class Surface:
     mindlin_stiffness_kg_per_s2_m0_5: float | None = None
     #: Damping of the normal force in kg/(s mᵉ), with e = 0, 1/2 or 1/4 as the law says.
     damping_coefficient: float | None = None
-    #: Damping c of the normal force without unit, of Tsuji's law or of a linear one; half of it, or c
-    #: over the root of 5, is critical_damping_ratio.
+    #: Damping c of the normal force without unit, of Tsuji's law or of a linear one; half of it, or
+    #: c over the root of 5, is critical_damping_ratio.
     damping_ratio: float | None = None
     #: Ratio of tangential and normal damping; 0 without it.
     tangential_damping_ratio: float | None = None
     #: Damping ratio as particle codes define it: the damping over the critical one.
     critical_damping_ratio: float | None = None
+    #: Ratio k2/k1 of the stiffnesses of a hysteretic normal force, falling and growing.
+    unloading_stiffness_ratio: float | None = None
+    #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
+    hardening_per_m: float | None = None
     #: Coefficient of normal restitution, instead of a damping.
     e_n: float | None = None
     #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.
@@ -282,7 +286,8 @@ _UNITS = {
     "work_of_wall_j": ("work of the wall", "J"),
     "sliding_j": ("energy lost in slip", "J"),
     "damping_j": ("energy taken by damping", "J"),
-    "spring_left_j": ("energy left in the spring, or lost in stick", "J"),
+    "tangential_damping_j": ("energy taken by the tangential dashpot in stick", "J"),
+    "spring_left_j": ("energy left in the spring, or lost to it in stick", "J"),
     "compression_left_j": ("energy left in the compression", "J"),
     "unbalanced_j": ("what is missing in the balance of energy", "J"),
 }
@@ -352,6 +357,7 @@ class Impacts(Tabular):
         self.work_of_wall_j = numbers["work_of_wall_j"]
         self.sliding_j = numbers["sliding_j"]
         self.damping_j = numbers["damping_j"]
+        self.tangential_damping_j = numbers["tangential_damping_j"]
         self.spring_left_j = numbers["spring_left_j"]
         self.compression_left_j = numbers["compression_left_j"]
         self.unbalanced_j = numbers["unbalanced_j"]
@@ -439,6 +445,8 @@ def impact(
     engine, shape = (method, rtol, atol), normal.shape
     count = _threads(threads)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
+    if pair.surface.friction == 0:
+        chosen = _laws.arguments(_laws.without_friction(pair.law), 0.0)
 
     def made(
         found: tuple[dict[str, Any], Floats],

@@ -13,9 +13,10 @@ import numpy as np
 from stickslip import _native
 
 #: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz"),
-#: damping ("none", "linear", "viscoelastic", "tsuji"), tangential ("constant", "mindlin"), history
-#: ("displacement", "force", "none"), rescaled, limit_damping (bool), end ("force", "overlap"),
-#: coulomb_test ("total", "spring"). A term that is not given is that of the paper's law.
+#: damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening"), tangential
+#: ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
+#: (bool), end ("force", "overlap"), coulomb_test ("total", "spring"). A term that is not given is
+#: that of the paper's law.
 Law: TypeAlias = str | Mapping[str, Any]
 
 
@@ -108,6 +109,18 @@ def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
     return text, float(tangential_damping)
 
 
+def without_friction(law: Law | None) -> Law:
+    """The terms of a law whose contact has no tangential force."""
+    if not isinstance(law, str | None):
+        return {**law, "history": "none"}
+    name = (law or "paper").removesuffix("+limit_damping")
+    known = laws()
+    if name not in known:
+        raise ValueError(_objection(name))
+    terms = {**known[name].law, "history": "none"}
+    return terms if name == law or law is None else {**terms, "limit_damping": True}
+
+
 @cache
 def _check(text: str) -> None:
     """Refuses what is no law, with names that are near."""
@@ -115,8 +128,9 @@ def _check(text: str) -> None:
         # Without a single collision, nothing but the law is read.
         nothing = (np.empty(0), np.empty(0), np.empty(0))
         _native.eps_t(nothing, ("auto", None, None), (text, 0.0), True, 1)
-    except ValueError:
-        raise ValueError(_objection(text)) from None
+    except ValueError as error:
+        said = str(error)
+        raise ValueError(said if "not computed" in said else _objection(text)) from None
 
 
 def _objection(text: str) -> str:

@@ -384,7 +384,7 @@ class RestitutionTable:
     def make(
         kappa: tuple[float, float],
         psi: tuple[float, float],
-        damping: float,
+        collisions: tuple[float, tuple[str, float]],
         bound: float,
         regions: bool,
         threads: int,

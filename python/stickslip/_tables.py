@@ -16,7 +16,7 @@ from stickslip._axes import svg
 from stickslip._progress import Progress, reported
 from stickslip._collisions import _threads
 from stickslip._impacts import Bodies
-from stickslip._laws import damping_of
+from stickslip._laws import Law, arguments, damping_of
 
 
 if TYPE_CHECKING:
@@ -171,6 +171,8 @@ def table(
     damping: float = 0.0,
     *,
     e_n: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     bound: float = 1e-8,
     regions: bool = False,
     threads: int | None = None,
@@ -178,10 +180,11 @@ def table(
 ) -> RestitutionTable:
     """Makes a table of eps_t whose error is below a bound everywhere.
 
-    kappa, psi: intervals, above 0. damping, e_n: as in `collide`. bound: 1e-12 to 1e-3. regions: whether the table has the regions
-    of the atlas too. threads: 1 to 1024, or None for one for each core; results do not depend on
-    it. progress: called now and then with the steps done and all that are known; True shows a bar on
-    stderr. The contact law is the paper's.
+    kappa, psi: intervals, above 0. damping, e_n, law, tangential_damping: as in `collide`. bound:
+    1e-12 to 1e-3, and with another law than the paper's from 1e-9. regions: whether the table has
+    the regions of the atlas too. threads: 1 to 1024, or None for one for each core; results do not
+    depend on it. progress: called now and then with the steps done and all that are known; True shows a bar on
+    stderr.
 
     Raises ValueError for parameters out of range, and ComputationError where the bound is not
     reached.
@@ -190,7 +193,8 @@ def table(
     >>> bool(abs(made.eps_t(1.5, 1.2) - eps_t(1.5, 1.2)) < 1e-6)
     True
     """
-    window = _interval(kappa), _interval(psi), float(damping_of(damping, e_n, None))
+    collisions = float(damping_of(damping, e_n, law)), arguments(law, tangential_damping)
+    window = _interval(kappa), _interval(psi), collisions
     with reported(progress, "table") as report:
         native = _native.RestitutionTable.make(
             *window, float(bound), bool(regions), _threads(threads), report
@@ -210,7 +214,7 @@ def table_of_velocities(
 ) -> VelocityTable:
     """Makes a table of eps_t and eps_n of two bodies whose errors are below a bound everywhere.
 
-    bodies: as in `impact`; their contact law is the paper's. normal_m_per_s, tangential_m_per_s:
+    bodies: as in `impact`, with their contact law. normal_m_per_s, tangential_m_per_s:
     intervals of the velocities of the surfaces at the contact, above 0. The other arguments are
     those of `table`.
 

@@ -188,3 +188,45 @@ def test_laws_without_history_and_with_other_coulomb_tests() -> None:
     first = stickslip.collide(3, 0.4, law=terms, **options)
     assert first.eps_t == stickslip.collide(3, 0.4, law=same, **options).eps_t
     assert first.eps_t != stickslip.collide(3, 0.4, law="gran/hooke/history", **options).eps_t
+
+
+def test_hysteretic_forces() -> None:
+    found = stickslip.collide(3, 0.4, law="walton-braun", e_n=0.5)
+    assert found.damping == pytest.approx(3.0, rel=1e-14)
+    assert found.eps_n == pytest.approx(0.5, abs=1e-12)
+    assert stickslip.restitution(0.5, "walton-braun").critical_damping_ratio is None
+    with pytest.raises(ValueError, match="a hysteretic force has no dashpot"):
+        law = {"normal": "linear", "damping": "hysteretic"}
+        stickslip.collide(3, 0.4, 0.5, law=law, tangential_damping=0.2)
+    surface = stickslip.Surface(
+        0.5,
+        4e4,
+        normal_stiffness_kg_per_s2=5e4,
+        unloading_stiffness_ratio=4,
+    )
+    grain = stickslip.Sphere(1e-3, stickslip.Material(1e7, 0.3, 2500))
+    bodies = stickslip.Bodies(grain, grain, surface, "walton-braun")
+    assert stickslip.impact(bodies, 0.1, 0.05).eps_n == pytest.approx(0.5, abs=1e-12)
+    with pytest.raises(ValueError, match="adhesion is not computed"):
+        stickslip.collide(3, 0.4, law="granular/jkr")
+
+
+def test_no_friction_and_no_spring() -> None:
+    for law in (None, "gran/hooke/history+limit_damping", {"normal": "linear"}):
+        assert stickslip.collide(3, ratio=0.7, mu=0, law=law).eps_t == 1
+        assert stickslip.collide(0, 0.5, law=law).eps_t == 1
+    assert stickslip.eps_t([3.0, 30.0], ratio=0.7, mu=0).tolist() == [1, 1]
+    with pytest.raises(ValueError, match="expected a call of its own for mu = 0"):
+        stickslip.eps_t(3.0, ratio=0.7, mu=[0, 0.4])
+    with pytest.raises(ValueError, match="or a law without history"):
+        stickslip.collide(0, 0.5, 0.2, law="gran/hooke/history", tangential_damping=1)
+    steel = stickslip.Sphere(0.02, stickslip.Material(210e9, 0.3, 7850))
+    bodies = stickslip.Bodies(steel, steel, stickslip.Surface(0, 1e9, 1e-6))
+    many = stickslip.impact(bodies, [1.0, 2.0], 0.5)
+    assert many.eps_t.tolist() == [1, 1]
+
+
+def test_a_table_of_another_law() -> None:
+    made = stickslip.table((2.5, 2.8), (0.3, 0.5), 0.4, law="walton-braun", bound=1e-4)
+    exact = stickslip.eps_t(2.6, 0.4, 0.4, law="walton-braun")
+    assert abs(made.eps_t(2.6, 0.4) - exact) < 1e-4

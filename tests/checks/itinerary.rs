@@ -89,7 +89,7 @@ fn anywhere(law: Law, stiffest: f64, random: &mut fastrand::Rng) -> Contact {
     let damping = between(1e-10, (0.99 * law.endless_from()).min(10.0));
     let none = law.damping == Damping::None || random.u8(..) < 32;
     let damping = if none { 0.0 } else { damping };
-    let even = law == Law::PAPER || random.bool();
+    let even = law == Law::PAPER || law.damping.is_hysteretic() || random.bool();
     let tangential_damping = if even { 0.0 } else { 2.0 * random.f64() };
     Contact::new(kappa, psi, damping)
         .and_then(|contact| contact.with_law(law, tangential_damping))

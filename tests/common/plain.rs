@@ -99,6 +99,7 @@ impl Plain {
                 Damping::Linear => 1.0,
                 Damping::Viscoelastic => x.sqrt(),
                 Damping::Tsuji => x.sqrt().sqrt(),
+                other => panic!("{other:?} is compared elsewhere"),
             }
     }
 

@@ -192,7 +192,7 @@ impl From<TableError> for Failure {
     /// The failure of a table whose window comes from options.
     fn from(error: TableError) -> Self {
         match error {
-            TableError::Settings(_) | TableError::Law => Self::Usage(error.to_string()),
+            TableError::Settings(_) => Self::Usage(error.to_string()),
             TableError::Atlas(error) => error.into(),
             error => Self::Table(error),
         }

@@ -2,7 +2,7 @@
 
 use stickslip_solver::InvalidValue;
 
-use crate::law::{Damping, Law};
+use crate::law::{Damping, Law, Tangential};
 
 /// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
 ///
@@ -41,26 +41,31 @@ fn is_paper(law: &Law) -> bool {
 }
 
 impl Contact {
-    /// A collision with the scaled stiffness `kappa` = k_t/(α m β^{4/5} g_n^{2/5}) > 0, the impact
+    /// A collision with the scaled stiffness `kappa` = k_t/(α m β^{4/5} g_n^{2/5}) ≥ 0, the impact
     /// ratio `psi` = (g_t/g_n) α/μ > 0 and the scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥ 0.
+    ///
+    /// With κ = 0 there is no spring, whatever the law, and ε_t = 1: this is the limit of small κ
+    /// without a tangential dashpot. With one, κ = 0 is refused in laws with history.
     ///
     /// # Errors
     /// [`InvalidValue`] names the first parameter that is out of its range.
     pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidValue> {
-        in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
+        in_range("kappa", kappa, "a finite number, 0 or above", kappa >= 0.0)?;
         in_range("psi", psi, "a finite number above 0", psi > 0.0)?;
         in_range("damping", damping, "a finite number, 0 or above", damping >= 0.0)?;
-        Ok(Self { kappa, psi, damping, tangential_damping: 0.0, law: Law::PAPER })
+        let law = if kappa == 0.0 { Law::PAPER.without_spring() } else { Law::PAPER };
+        Ok(Self { kappa, psi, damping, tangential_damping: 0.0, law })
     }
 
     /// The same collision with another law, and with the tangential damping b =
     /// (γ_t/γ_n)/α ≥ 0, which is a ratio of the two damping constants.
     ///
     /// # Errors
-    /// [`InvalidValue`]: the tangential damping is out of its range, the damping has no effect
-    /// in this law, or a contact with this damping never ends.
+    /// [`InvalidValue`]: the tangential damping is out of its range, also for κ = 0 and hysteretic
+    /// forces, the damping has no effect in this law, a contact with this damping never ends, or
+    /// the force is hysteretic and the spring depends on the overlap.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
-        let Self { damping, .. } = self;
+        let Self { damping, kappa, .. } = self;
         let ok = tangential_damping >= 0.0;
         in_range("tangential_damping", tangential_damping, "a finite number, 0 or above", ok)?;
         let ok = damping == 0.0 || law.damping != Damping::None;
@@ -73,7 +78,40 @@ impl Contact {
             _ => "less than 1.1279881355201692: from there on contacts of this law never end",
         };
         in_range("damping", damping, expected, damping < law.endless_from())?;
-        Ok(Self { tangential_damping, law, ..self })
+        if law.damping.is_hysteretic() {
+            let ok = tangential_damping == 0.0;
+            let expected = "0, since a hysteretic force has no dashpot";
+            in_range("tangential_damping", tangential_damping, expected, ok)?;
+            let steady = law.tangential == Tangential::Constant && !law.rescaled;
+            if law.remembers() && !steady {
+                let phrase = "has a hysteretic force and a spring that depends on the overlap";
+                let expected = "a spring of constant stiffness that is not rescaled";
+                return Err(InvalidValue::phrase("the law", phrase, expected));
+            }
+        }
+        if kappa > 0.0 {
+            return Ok(Self { tangential_damping, law, ..self });
+        }
+        let expected = "0 where kappa = 0, or a law without history: what a slip with a dashpot \
+                        sets a spring to would stay for ever";
+        let ok = !law.remembers() || damping * tangential_damping == 0.0;
+        in_range("tangential_damping", tangential_damping, expected, ok)?;
+        Ok(Self { tangential_damping, law: law.without_spring(), ..self })
+    }
+
+    /// The same collision without friction, μ = 0: there is no tangential force, and ε_t = 1. In
+    /// the place of ψ, which would be infinite, is the impact ratio g_t/g_n times α.
+    ///
+    /// ```
+    /// use stickslip_contact::{Contact, HistoryOf};
+    ///
+    /// let contact = Contact::new(63.0, 0.5, 0.1)?.without_friction();
+    /// assert_eq!(contact.law().history, HistoryOf::None);
+    /// # Ok::<(), stickslip_contact::InvalidValue>(())
+    /// ```
+    #[must_use]
+    pub fn without_friction(self) -> Self {
+        Self { tangential_damping: 0.0, law: self.law.without_spring(), ..self }
     }
 
     /// The same κ, ψ and damping with the paper's law.
@@ -86,12 +124,17 @@ impl Contact {
         self.kappa
     }
 
+    /// κ, or 1 where it is 0: by this and μ the tangential forces at switches are divided.
+    pub fn force_unit(&self) -> f64 {
+        if self.kappa > 0.0 { self.kappa } else { 1.0 }
+    }
+
     /// Reduced impact ratio ψ = (g_t/g_n) α/μ.
     pub fn psi(&self) -> f64 {
         self.psi
     }
 
-    /// Scaled damping a of the normal force.
+    /// Scaled damping a of the normal force; where it is hysteretic, k₂/k₁ − 1.
     pub fn damping(&self) -> f64 {
         self.damping
     }

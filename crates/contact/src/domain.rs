@@ -40,10 +40,13 @@ impl Domain {
     /// [`OutOfDomain`] names the first quantity that is not.
     pub fn check(&self, contact: &Contact) -> Result<(), OutOfDomain> {
         let (kappa, psi) = (contact.kappa(), contact.psi());
+        // Without a spring κ has no effect.
+        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let of_spring = |range| if contact.law().remembers() { range } else { any };
         [
-            ("kappa", kappa, self.kappa),
+            ("kappa", kappa, of_spring(self.kappa)),
             ("psi", psi, self.psi),
-            ("kappa·psi", kappa * psi, self.pull),
+            ("kappa·psi", kappa * psi, of_spring(self.pull)),
             ("damping", contact.damping(), self.damping),
         ]
         .into_iter()

@@ -1,10 +1,12 @@
 //! A contact with any law, in coordinates in which everything is smooth.
 //!
 //! With x = uⁿ and dt = n u^{n−1} ds, where n is 1, 2 or 4, the equations of every [`Law`] are
-//! polynomial: du/ds = v, and no root is left. Three things need a mode of their own:
+//! polynomial: du/ds = v, and no root is left. Four things need a mode of their own:
 //!
 //! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
 //!   compression on, history over √x is carried, whose equation is polynomial again.
+//! - While a hysteretic force falls, uⁿ is the overlap less what is left of it where the force
+//!   ends: the equations are those of a force without hysteresis and with another stiffness.
 //! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
@@ -30,7 +32,7 @@ use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step}
 use equations::Equations;
 
 /// Number of components.
-pub const STATE: usize = 10;
+pub const STATE: usize = 11;
 /// u, the n-th root of the overlap.
 pub const U: usize = 0;
 /// v = dx/dt where the damping a is below 1, otherwise a³(v + u^{p−d}/a).
@@ -52,10 +54,12 @@ pub const RATE: usize = 7;
 pub const FAR_GAP: usize = 8;
 /// Its rate.
 pub const FAR_RATE: usize = 9;
+/// Tangential energy over σ² taken by the dashpot in stick.
+pub const DASHPOT: usize = 10;
 
 /// Number of guards.
 pub const GUARDS: usize = 5;
-/// Guard of greatest compression, where the history is rescaled.
+/// Guard of greatest compression, where the history is rescaled or the force hysteretic.
 pub const CREST: usize = 3;
 /// Guard of a reversal of the tangential velocity, which changes nothing.
 pub const REVERSAL: usize = 4;
@@ -88,7 +92,7 @@ pub struct Mode {
 pub enum Stage {
     /// From the start of contact on.
     Main,
-    /// Behind greatest compression, where the history is rescaled.
+    /// Behind greatest compression, where the history is rescaled or the force hysteretic.
     Unloading,
     /// Where the normal force attracts.
     Tail,
@@ -217,17 +221,22 @@ impl GeneralContact {
         self.equations.compression_rate(array(y))
     }
 
-    /// Overlap x.
-    pub fn overlap(&self, y: &State<STATE>) -> f64 {
+    /// The part of the overlap that pushes: x, but x − x₀ while a hysteretic force falls.
+    pub fn compression(&self, y: &State<STATE>) -> f64 {
         // Where a contact ends, rounding may make u negative.
         y[U].max(0.0).powi(i32::from(self.equations.exponents.n))
     }
 
+    /// Overlap x.
+    pub fn overlap(&self, mode: Mode, y: &State<STATE>) -> f64 {
+        self.compression(y) + self.equations.left_over(mode.stage)
+    }
+
     /// How long the overlap goes on after the force has ended in the state `y`: where the force is
     /// limited, nothing pushes any more.
-    pub fn flight(&self, y: &State<STATE>) -> f64 {
+    pub fn flight(&self, mode: Mode, y: &State<STATE>) -> f64 {
         match self.contact.law().end {
-            End::Overlap => self.overlap(y) / -self.compression_rate(y),
+            End::Overlap => self.overlap(mode, y) / -self.compression_rate(y),
             End::Force => 0.0,
         }
     }
@@ -238,22 +247,28 @@ impl GeneralContact {
         f64::from(n) * y[U].powi(n - 1)
     }
 
+    /// Tangential energy that the dashpot has taken in stick.
+    pub fn taken_by_dashpot(&self, y: &State<STATE>) -> f64 {
+        self.equations.taken_by_dashpot(array(y))
+    }
+
     /// Scaled normal force F.
-    pub fn normal_force(&self, y: &State<STATE>) -> f64 {
-        self.equations.normal_force(array(y))
+    pub fn normal_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
+        self.equations.normal_force(mode.stage, array(y))
     }
 
     /// The tangential force Q against the motion, in units of μ times the scaled normal force.
     pub fn tangential_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
         match mode.regime {
-            Regime::Slip => mode.side.sign() * mode.stage.sign() * self.normal_force(y),
+            Regime::Slip => mode.side.sign() * mode.stage.sign() * self.normal_force(mode, y),
             Regime::Stick => self.equations.tangential_force(mode.stage, array(y)),
         }
     }
 
-    /// The tangential force over κ: the elongation of a spring of this stiffness.
+    /// The tangential force over κ: the elongation of a spring of this stiffness. With κ = 0 the
+    /// force itself.
     pub fn spring(&self, mode: Mode, y: &State<STATE>) -> f64 {
-        self.tangential_force(mode, y) / self.contact.kappa()
+        self.tangential_force(mode, y) / self.contact.force_unit()
     }
 
     /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
@@ -329,7 +344,7 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
             }};
         }
         match (mode.regime, mode.progress) {
-            (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE DASHPOT),
             (Regime::Stick, Progress::Settled) => take!(stick; GAP RATE FAR_GAP FAR_RATE),
             (Regime::Stick, _) => take!(first_stick;),
         }
@@ -366,7 +381,8 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
             (_, Progress::Switched) => [below.from_zero(if e.remembers { 2 } else { 1 }), below],
             (_, Progress::Settled) => [below, below],
         };
-        let crest = if e.rescaled && mode.stage == Stage::Main { below } else { Guard::OFF };
+        let turns = (e.rescaled || e.hysteretic) && mode.stage == Stage::Main;
+        let crest = if turns { below } else { Guard::OFF };
         let reversal = Guard::new(Direction::Either).smooth();
         [end, same, other, crest, if self.reversals { reversal } else { Guard::OFF }]
     }

@@ -12,7 +12,8 @@ use std::fmt;
 /// dw/dt = −Q     Q = k y + b η w     k = κ or κ√x     dy/dt = w
 /// ```
 ///
-/// b is the tangential damping. Where |Q| would exceed |F|, dw/dt = −sgn(Q) |F|, and the history is
+/// A hysteretic force is x while the overlap grows, and (1 + a)(x − x₀) while it falls. b is the
+/// tangential damping. Where |Q| would exceed |F|, dw/dt = −sgn(Q) |F|, and the history is
 /// set such that Q has this size. The source is the text of LAMMPS (29 Sep 2021):
 /// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`. Laws without history
 /// have the dashpot alone, and in some codes Coulomb's limit holds for the spring alone:
@@ -33,7 +34,7 @@ use std::fmt;
 pub struct Law {
     /// The elastic part of the normal force.
     pub normal: Normal,
-    /// The damping η of the normal force.
+    /// The damping η of the normal force, or its hysteresis.
     pub damping: Damping,
     /// The stiffness k of the tangential spring.
     pub tangential: Tangential,
@@ -62,7 +63,7 @@ pub enum Normal {
     Hertz,
 }
 
-/// The damping η of the normal force.
+/// How the normal force loses energy: its damping η, or hysteresis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -75,6 +76,28 @@ pub enum Damping {
     Viscoelastic,
     /// a x^{1/4}.
     Tsuji,
+    /// 0: the force is hysteretic. Behind greatest compression it falls to 0 at the overlap x₀ that
+    /// is left, F = (1 + a)(x − x₀) or (1 + a)(x − x₀)^{3/2}. For a linear force this is the law of
+    /// Walton and Braun, J. Rheol. 30, 949 (1986), with the stiffnesses k₁ while the overlap grows
+    /// and k₂ = (1 + a) k₁ while it falls, and ε_n = √(k₁/k₂).
+    Hysteretic,
+    /// As [`Self::Hysteretic`], but a is proportional to the greatest overlap, and so to the normal
+    /// velocity where the force is linear: the law of Luding, Granular Matter 10, 235 (2008),
+    /// without adhesion and below its largest stiffness, and Walton's and Braun's with
+    /// k₂ = k₁ + S F.
+    Hardening,
+}
+
+impl Damping {
+    /// Whether the force depends on the rate of the overlap.
+    pub fn is_viscous(self) -> bool {
+        matches!(self, Self::Linear | Self::Viscoelastic | Self::Tsuji)
+    }
+
+    /// Whether the force is another one while the overlap falls.
+    pub fn is_hysteretic(self) -> bool {
+        matches!(self, Self::Hysteretic | Self::Hardening)
+    }
 }
 
 /// The stiffness k of the tangential spring.
@@ -193,13 +216,20 @@ impl Law {
             Normal::Hertz => "x^(3/2)",
         };
         let eta = match self.damping {
-            Damping::None => "",
+            Damping::None | Damping::Hysteretic | Damping::Hardening => "",
             Damping::Linear => "a",
             Damping::Viscoelastic => "a √x",
             Damping::Tsuji => "a x^(1/4)",
         };
-        let damped = self.damping != Damping::None;
+        let damped = self.damping.is_viscous();
         let normal = match (damped, self.limit_damping && self.end == End::Overlap) {
+            _ if self.damping.is_hysteretic() => {
+                let falling = match self.normal {
+                    Normal::Linear => "(1 + a)(x − x₀)",
+                    Normal::Hertz => "(1 + a)(x − x₀)^(3/2)",
+                };
+                format!("F = {elastic}, {falling} where v < 0")
+            }
             (false, _) => format!("F = {elastic}"),
             (true, false) => format!("F = {elastic} + {eta} v"),
             (true, true) => format!("F = max(0, {elastic} + {eta} v)"),
@@ -233,6 +263,12 @@ impl Law {
             End::Overlap => "x = 0",
         };
         format!("{normal}; {tangential}; |Q| ≤ |F|{beside}; ends at {end}")
+    }
+
+    /// The law without the spring: what becomes of the law as κ vanishes.
+    #[must_use]
+    pub fn without_spring(self) -> Self {
+        Self { history: HistoryOf::None, ..self }
     }
 
     /// Whether there is a spring.

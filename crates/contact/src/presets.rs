@@ -45,6 +45,45 @@ pub fn find(name: &str) -> Option<Preset> {
     Some(preset)
 }
 
+/// Why a law of particle codes that has this name, or a part of it, is not computed.
+///
+/// ```
+/// use stickslip_contact::presets;
+///
+/// assert!(presets::refusal("granular/jkr").is_some_and(|why| why.starts_with("adhesion")));
+/// assert_eq!(presets::refusal("gran/hooke/history"), None);
+/// ```
+pub fn refusal(name: &str) -> Option<&'static str> {
+    const ADHESION: &str = "adhesion is not computed: with it a contact begins and ends at pull-off, \
+                            with a force that jumps, and slow bodies never separate";
+    const ROLLING: &str = "rolling and twisting friction are not computed: they are torques, which act \
+                           on the relative spin and not on the velocity of the surfaces; in one \
+                           impact they change spins by about μ_r/μ of what sliding does";
+    const THORNTON: &str = "Thornton's elastic-plastic force is not computed: it is Hertz' up to a \
+                            yield velocity and linear above; walton-braun and \
+                            walton-braun/hardening are hysteretic forces that are computed";
+    const KNOWN: [(&str, &str); 13] = [
+        ("jkr", ADHESION),
+        ("dmt", ADHESION),
+        ("adhesi", ADHESION),
+        ("cohesi", ADHESION),
+        ("rolling", ROLLING),
+        ("twisting", ROLLING),
+        ("sds", ROLLING),
+        ("epsd", ROLLING),
+        ("cdt", ROLLING),
+        ("marshall", ROLLING),
+        ("thornton", THORNTON),
+        ("elastoplastic", THORNTON),
+        ("mdr", THORNTON),
+    ];
+    let words = name.to_lowercase();
+    let is_part = |word: &str| {
+        words.match_indices(word).any(|(at, _)| !words[..at].ends_with(char::is_alphanumeric))
+    };
+    KNOWN.into_iter().find(|(word, _)| is_part(word)).map(|(_, why)| why)
+}
+
 /// Names that look like `name`, the likeliest first, at most three.
 ///
 /// ```
@@ -156,6 +195,14 @@ const LIGGGHTS: &str = "LIGGGHTS-PUBLIC 3.8.0 (commit 3d5c00f): normal_model_her
 const LIGGGHTS_CHECKED: &str = "read in the source (tangential_model_history.h also in commit \
                                 25fc396): the dashpot acts in stick and is not in the Coulomb \
                                 test; limitForce on is +limit_damping";
+const LIGGGHTS_HYSTERESIS: &str = "LIGGGHTS-PUBLIC (commit 25fc396): normal_model_hooke_hysteresis.h, \
+                                   tangential_model_history.h";
+const MERCURY_PLASTIC: &str = "MercuryDPM, a copy (kuwt/MercuryDPM_fork, commit 126c08f): \
+                               LinearPlasticViscoelasticInteraction.cc";
+const WALTON_BRAUN: &str = "Walton and Braun, J. Rheol. 30, 949 (1986), normal forces; the tangential \
+                            force is that of a spring of constant stiffness";
+const WALTON_BRAUN_CHECKED: &str = "an independent integration of 100 collisions: \
+                                    tests/data/hysteretic_contacts.py; no particle code was run";
 const LIGGGHTS_NO_HISTORY: &str = "read in tangential_model_no_history.h, commit 25fc396; \
                                    limitForce on is +limit_damping";
 const MERCURY: &str = "MercuryDPM, a copy of July 2024 (kuwt/MercuryDPM_fork, commit fb0ebf1): \
@@ -174,7 +221,7 @@ const YADE_CHECKED: &str = "read in the source (HertzMindlin.cpp and Viscoelasti
 const YADE_UNDAMPED: &str = "read in the source, with the integrator's own damping 0; the law has no \
                              dashpots";
 
-use Damping::{Linear as Constant, None as Undamped, Tsuji, Viscoelastic};
+use Damping::{Hardening, Hysteretic, Linear as Constant, None as Undamped, Tsuji, Viscoelastic};
 use HistoryOf::{Displacement, Force};
 use Normal::{Hertz, Linear};
 use Tangential::{Constant as Spring, Mindlin};
@@ -189,6 +236,22 @@ pub const ALL: &[Preset] = &[
         source: "Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008)",
         checked: "docs/validation.md",
     },
+    read_in(
+        "Walton and Braun",
+        "walton-braun",
+        law(Linear, Hysteretic, Spring, Displacement, false),
+        false,
+        WALTON_BRAUN,
+        WALTON_BRAUN_CHECKED,
+    ),
+    read_in(
+        "Walton and Braun",
+        "walton-braun/hardening",
+        law(Linear, Hardening, Spring, Displacement, false),
+        false,
+        WALTON_BRAUN,
+        WALTON_BRAUN_CHECKED,
+    ),
     lammps("gran/hooke/history", law(Linear, Constant, Spring, Displacement, false)),
     lammps("gran/hertz/history", law(Hertz, Viscoelastic, Mindlin, Displacement, false)),
     lammps("granular/hooke/linear_history", law(Linear, Viscoelastic, Spring, Displacement, false)),
@@ -256,6 +319,23 @@ pub const ALL: &[Preset] = &[
         true,
         LIGGGHTS,
         LIGGGHTS_NO_HISTORY,
+    ),
+    read_in(
+        "LIGGGHTS",
+        "liggghts/hooke/hysteresis/history",
+        law(Linear, Hardening, Spring, Displacement, false),
+        false,
+        LIGGGHTS_HYSTERESIS,
+        "read in the source, with kn2kc 0, coefficientRestitution 1 and overlaps below deltaMaxLim",
+    ),
+    read_in(
+        "MercuryDPM",
+        "mercury/LinearPlasticViscoelasticSlidingFriction",
+        law(Linear, Hardening, Spring, Displacement, false),
+        false,
+        MERCURY_PLASTIC,
+        "read in the source, with cohesion stiffness and dissipation 0, overlaps below deltaStar, and \
+         equal static and dynamic friction",
     ),
     read_in(
         "MercuryDPM",

@@ -258,6 +258,7 @@ impl Totals {
             tangential_initial: 0.5 * psi * psi,
             tangential_final: 0.5 * final_velocity * final_velocity,
             sliding: self.sliding,
+            tangential_damping: 0.0,
             spring_left: 0.0,
             ..normal
         }

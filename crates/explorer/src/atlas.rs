@@ -60,6 +60,7 @@ pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String
     let sides = [range(x), range(y)];
     let (plane, units) = spheres.plane(sides).map_err(|error| error.to_string())?;
     plane.sheet().require_wide(plane.names()).map_err(|error| error.to_string())?;
+    plane.require_smooth().map_err(|error| error.to_string())?;
     let window = plane.window();
     let any = plane.contact(&window.low).map_err(|error| error.to_string())?;
     let per_run = if any.obeys_paper() { PerRun::Microseconds } else { PerRun::Milliseconds };

@@ -3,7 +3,7 @@
 //! A further engine is a module beside [`integrator`], or a crate beside `stickslip-exact`, and a
 //! variant of [`Engine`].
 
-use stickslip_contact::{Collision, Contact, Law};
+use stickslip_contact::{Collision, Contact, Law, Regime, Side};
 use stickslip_exact::exact::{self};
 use stickslip_exact::linear;
 use stickslip_solver::{Dop853, Dopri5, InvalidValue, Options, Statistics};
@@ -39,7 +39,8 @@ pub enum Engine {
     Dop853(Tolerances),
     /// Dormand–Prince 5(4).
     Dopri5(Tolerances),
-    /// The exact solution of the paper's law, or of a linear contact.
+    /// The exact solution of the paper's law, also without a tangential force, or of a linear
+    /// contact.
     Exact,
     /// The best engine for a contact: the exact solution where its law is the paper's, otherwise
     /// Dormand–Prince 8(5,3).
@@ -185,7 +186,10 @@ impl Engine {
                 None
             }
             Self::Exact | Self::Auto => {
-                linear::collide_into(contact, collision)?;
+                match of_paper_without_tangential_force(&contact) {
+                    Some(sliding) => without_tangential_force(contact, sliding, collision)?,
+                    None => linear::collide_into(contact, collision)?,
+                }
                 None
             }
         };
@@ -239,4 +243,35 @@ impl Engine {
             Self::Exact | Self::Auto => Collider::default().history(contact),
         }
     }
+}
+
+/// A contact with the paper's law that has the normal motion of `contact`, if this is the paper's
+/// but for a tangential force, which it has not.
+fn of_paper_without_tangential_force(contact: &Contact) -> Option<Contact> {
+    let (law, damping) = (contact.law(), contact.damping());
+    let force = law.remembers() || damping * contact.tangential_damping() > 0.0;
+    let (history, tangential) = (Law::PAPER.history, Law::PAPER.tangential);
+    let beside = Law { history, tangential, rescaled: false, ..law };
+    let of_paper = !force && beside.acts_as_paper(damping, 0.0);
+    // It slides from beginning to end.
+    of_paper.then(|| Contact::new(1.0, 3.0, damping).ok()).flatten()
+}
+
+/// The collision of a contact without a tangential force, which has the normal motion of `sliding`.
+fn without_tangential_force(
+    contact: Contact,
+    sliding: Contact,
+    collision: &mut Collision,
+) -> Result<(), CollisionError> {
+    exact::collide_into(sliding, collision)?;
+    collision.contact = contact;
+    (collision.start, collision.start_side) = (Regime::Stick, Side::Positive);
+    collision.final_velocity = contact.psi();
+    collision.switches.clear();
+    collision.reversals = 0;
+    let energy = &mut collision.energy;
+    energy.tangential_initial = 0.5 * contact.psi() * contact.psi();
+    energy.tangential_final = energy.tangential_initial;
+    (energy.sliding, energy.spring_left) = (0.0, 0.0);
+    Ok(())
 }

@@ -15,7 +15,11 @@ use crate::engines::error::CollisionError;
 /// Whether ε_n of the law depends on the velocity: the same damping constant is another scaled
 /// damping a.
 pub fn depends_on_velocity(law: Law) -> bool {
-    law.damping != Damping::None && critical_damping(law).is_none()
+    match law.damping {
+        Damping::None | Damping::Hysteretic => false,
+        Damping::Hardening => true,
+        _ => critical_damping(law).is_none(),
+    }
 }
 
 /// The scaled damping a of a contact whose damping ratio ζ is 1: 2 where force and damping are
@@ -38,8 +42,17 @@ fn attracts(law: Law) -> bool {
     law.end == End::Overlap && !law.limit_damping
 }
 
-/// ε_n of a law with the scaled damping a: in closed form for linear forces and where a contact
-/// with Tsuji's damping of Hertz' force lasts until x = 0, otherwise by [`Engine::Auto`].
+/// ln ε_n of a hysteretic force over ln(1 + a): the energy is divided as the overlap is.
+fn hysteretic_power(law: Law) -> f64 {
+    match law.normal {
+        Normal::Linear => -0.5,
+        Normal::Hertz => -1.0 / 3.0,
+    }
+}
+
+/// ε_n of a law with the scaled damping a: in closed form for linear and hysteretic forces and
+/// where a contact with Tsuji's damping of Hertz' force lasts until x = 0, otherwise by
+/// [`Engine::Auto`].
 ///
 /// ```
 /// use stickslip_model::{presets, restitution};
@@ -56,6 +69,9 @@ pub fn eps_n(law: Law, damping: f64) -> Result<f64, CollisionError> {
     // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
     // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(law, 0.0)?;
+    if law.damping.is_hysteretic() {
+        return Ok((hysteretic_power(law) * damping.ln_1p()).exp());
+    }
     if let (Some(critical), true) = (critical_damping(law), attracts(law)) {
         let ratio = damping / critical;
         return Ok((-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp());
@@ -91,8 +107,8 @@ fn unreachable(wanted: f64, least: f64) -> CollisionError {
 }
 
 /// The scaled damping a with which the law has this ε_n, above 0 and at most 1: in closed form
-/// where a contact with linear force and damping, or with Hertz' and Tsuji's, lasts until x = 0;
-/// otherwise solved, with an ε_n within 1e-12.
+/// where the force is hysteretic, or a contact with linear force and damping, or with Hertz' and
+/// Tsuji's, lasts until x = 0; otherwise solved, with an ε_n within 1e-12.
 ///
 /// ```
 /// use stickslip_model::{presets, restitution};
@@ -118,6 +134,9 @@ pub fn damping(law: Law, wanted: f64) -> Result<f64, CollisionError> {
     }
     if law.damping == Damping::None {
         return Err(unreachable(wanted, 1.0));
+    }
+    if law.damping.is_hysteretic() {
+        return Ok((wanted.ln() / hysteretic_power(law)).exp_m1());
     }
     if let (Some(critical), true) = (critical_damping(law), attracts(law)) {
         let log = -wanted.ln();
@@ -238,6 +257,8 @@ fn keywords(name: &str) -> &'static [(&'static str, Formula, &'static str)] {
             ("damping tsuji, newer", Formula::EffectiveMass, NEWER),
             ("damping coeff_restitution", Formula::Linear, LAMMPS),
         ],
+        [_, "hooke", "hysteresis", ..]
+        | ["mercury", "LinearPlasticViscoelasticSlidingFriction"] => &[],
         ["liggghts", "hooke", ..] => &[("coefficientRestitution", Formula::Linear, LIGGGHTS)],
         ["liggghts", "hertz", ..] => &[("coefficientRestitution", Formula::Hertz, LIGGGHTS)],
         ["mercury", "LinearViscoelasticSlidingFriction"] => {

@@ -78,12 +78,13 @@ impl Serialize for Motion {
 /// The entries in J without the unit in their names, and what they leave unexplained.
 impl Serialize for EnergyAccount {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("EnergyAccount", 8)?;
+        let mut object = serializer.serialize_struct("EnergyAccount", 9)?;
         object.serialize_field("kinetic_before", &self.kinetic_before_j)?;
         object.serialize_field("kinetic_after", &self.kinetic_after_j)?;
         object.serialize_field("work_of_wall", &self.work_of_wall_j)?;
         object.serialize_field("sliding", &self.sliding_j)?;
         object.serialize_field("damping", &self.damping_j)?;
+        object.serialize_field("tangential_damping", &self.tangential_damping_j)?;
         object.serialize_field("spring_left", &self.spring_left_j)?;
         object.serialize_field("compression_left", &self.compression_left_j)?;
         object.serialize_field("unbalanced", &self.unbalanced_j())?;

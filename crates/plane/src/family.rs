@@ -3,7 +3,7 @@
 use stickslip_model::exact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{CollisionError, Contact, Engine, InvalidValue, Law};
+use stickslip_model::{CollisionError, Contact, Engine, InvalidValue, Law, Normal};
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, Options, Start};
 use stickslip_tracer::{
@@ -91,6 +91,8 @@ impl CollisionPlane {
     /// [`InvalidValue`]: a value that no collision can have.
     pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidValue> {
         let sides = [kappa, psi].map(|(low, high)| Range { low, high });
+        let expected = "a finite number above 0";
+        InvalidValue::check("kappa", kappa.0, expected, kappa.0 > 0.0)?;
         let first = Contact::new(kappa.0, psi.0, damping)?;
         Contact::new(kappa.1, psi.1, damping)?;
         let sheet = Sheet { sides, chart: Chart::of(sides[0], sides[1]), integrated: false };
@@ -273,6 +275,39 @@ impl CollisionPlane {
     pub(crate) fn normal_motions(&self) -> [Contact; 2] {
         let Window { low, high } = self.window();
         [low, high].map(|corner| self.contact_or_any(&corner))
+    }
+
+    /// Refuses planes with a hysteretic force in which a slip may graze its end at greatest
+    /// compression, where this force has a kink.
+    ///
+    /// With the stiffness k = dF/dx a slip is left where s κ w − dF/dt falls through 0, and that
+    /// has the rate F (k − κ) at greatest compression: where κ is between both stiffnesses, there
+    /// is a minimum without a slope of 0.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] has the interval of κ and those that are expected.
+    pub fn require_smooth(&self) -> Result<(), InvalidValue> {
+        /// How far traces go beyond the window, as a part of κ.
+        const BEYOND: f64 = 0.05;
+        let motions = self.normal_motions();
+        let [one, other] = motions.map(|contact| contact.kappa());
+        let (low, high) = (one.min(other), one.max(other));
+        let damping = motions.map(|contact| contact.damping()).into_iter().fold(0.0, f64::max);
+        let law = self.first.law();
+        if !law.damping.is_hysteretic() || !law.remembers() || damping == 0.0 {
+            return Ok(());
+        }
+        let (loading, power) = match law.normal {
+            Normal::Linear => (1.0, 1.0),
+            Normal::Hertz => (1.5 * 1.25_f64.powf(0.2), 2.0 / 3.0),
+        };
+        let (least, most) =
+            (loading / (1.0 + BEYOND), loading * (1.0 + damping).powf(power) * (1.0 + BEYOND));
+        let expected = format!(
+            "below {least:.4} or above {most:.4}: between both stiffnesses of a hysteretic force a \
+             slip may graze its end at greatest compression, which is not traced"
+        );
+        InvalidValue::check("kappa", [low, high], expected, high <= least || low >= most)
     }
 
     /// The contact at a traced point. Where a parameter is not a number there is nothing to find,

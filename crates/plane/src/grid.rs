@@ -139,7 +139,14 @@ impl Grid {
     /// [`InvalidValue`]: no collision has the parameters of this cell.
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidValue> {
         let [kappa, psi, damping] = self.parameters(column, row)?;
-        Contact::new(kappa, psi, damping)?.with_law(self.law, self.tangential_damping)
+        let contact = Contact::new(kappa, psi, damping)?;
+        let contact = contact.with_law(self.law, self.tangential_damping)?;
+        let friction = match self.coordinates {
+            Coordinates::Psi { .. } => return Ok(contact),
+            Coordinates::Ratio { reduction, .. } => reduction.mu,
+            Coordinates::Velocities { pair } => pair.surface.friction,
+        };
+        Ok(if friction > 0.0 { contact } else { contact.without_friction() })
     }
 
     /// The quantities along a row and along a column.

@@ -22,6 +22,7 @@ impl Oblique {
     /// [`InvalidValue`]: the speed, or a property of the pair, is out of its range.
     pub fn new(pair: BodyPair, speed_m_per_s: f64) -> Result<Self, InvalidValue> {
         let kappa = pair.impact(speed_m_per_s, speed_m_per_s)?.contact.kappa();
+        InvalidValue::check("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
         Ok(Self { pair, speed_m_per_s, kappa })
     }
 

@@ -79,6 +79,7 @@ impl Code {
 pub fn lines(code: Code, pair: &BodyPair) -> Text {
     let constants = Constants::new(pair);
     let text = match code {
+        _ if pair.law.damping.is_hysteretic() => Err(HYSTERETIC.to_owned()),
         Code::Lammps => constants.lammps(),
         Code::Liggghts => constants.liggghts(),
         Code::Yade => constants.yade(),
@@ -87,6 +88,9 @@ pub fn lines(code: Code, pair: &BodyPair) -> Text {
     };
     text.map_err(|reason| format!("{} has no input for these contacts: {reason}", code.name()))
 }
+
+/// Why the inputs of no code are written with a hysteretic force.
+const HYSTERETIC: &str = "its normal force is hysteretic; expected a law with damping or without";
 
 /// The constants of a pair as codes have them.
 struct Constants {
@@ -189,7 +193,9 @@ impl Constants {
         let (normal, stiffness) =
             if hertz { ("hertz", elastic / root) } else { ("hooke", elastic) };
         let (keyword, eta) = match law.damping {
-            Damping::None => ("velocity", "0.0".to_owned()),
+            Damping::None | Damping::Hysteretic | Damping::Hardening => {
+                ("velocity", "0.0".to_owned())
+            }
             _ if damping == 0.0 => ("velocity", "0.0".to_owned()),
             Damping::Linear => ("mass_velocity", format!("{:?}", damping / mass)),
             Damping::Viscoelastic => ("viscoelastic", format!("{:?}", damping / (mass * root))),

@@ -136,9 +136,6 @@ pub enum TableError {
     /// Settings or a document are out of range, or no collision has the parameters of the window.
     #[error(transparent)]
     Settings(#[from] InvalidValue),
-    /// The bodies have another contact law.
-    #[error("the bodies have another contact law; expected the paper's, which tables are made for")]
-    Law,
     /// The boundaries of the window cannot be traced.
     #[error(transparent)]
     Atlas(#[from] AtlasError),

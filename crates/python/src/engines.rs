@@ -35,6 +35,9 @@ impl LawChoice {
             let refused = |error: &dyn Display| {
                 bad_input(format!("law = {text}: {error}; expected a name of stickslip.laws()"))
             };
+            if let Some(why) = presets::refusal(text).filter(|_| !text.contains('{')) {
+                return Err(bad_input(format!("law = {text:?}: {why}")));
+            }
             if text.trim_start().starts_with('[') {
                 return Err(refused(&"is a list"));
             }

@@ -227,7 +227,7 @@ impl BodyPair {
 }
 
 /// The numbers of an impact beside its collision, without those of its spheres.
-const NUMBERS: usize = 19;
+const NUMBERS: usize = 20;
 /// The numbers of each sphere.
 const NUMBERS_OF_SPHERE: usize = 6;
 
@@ -242,8 +242,8 @@ fn write_numbers(report: &ImpactReport, out: &mut Vec<f64>) {
     out.extend([observed.centre_impact_angle_rad, observed.centre_rebound_angle_rad]);
     out.push(observed.impulse_ratio);
     out.extend([energy.kinetic_before_j, energy.kinetic_after_j, energy.work_of_wall_j]);
-    out.extend([energy.sliding_j, energy.damping_j, energy.spring_left_j]);
-    out.extend([energy.compression_left_j, energy.unbalanced_j()]);
+    out.extend([energy.sliding_j, energy.damping_j, energy.tangential_damping_j]);
+    out.extend([energy.spring_left_j, energy.compression_left_j, energy.unbalanced_j()]);
     for motion in report.spheres() {
         out.extend(motion.velocity_m_per_s.iter().chain(motion.spin_rad_per_s.iter()));
     }

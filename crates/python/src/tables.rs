@@ -10,6 +10,7 @@ use stickslip_practice::tables::{
 
 use crate::arrays::{Pairs, numbers};
 use crate::background::watched;
+use crate::engines::LawChoice;
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::impacts::BodyPair;
 use crate::parallel::Threads;
@@ -22,19 +23,22 @@ pub struct RestitutionTable(Table);
 impl RestitutionTable {
     /// Makes and verifies the table of a window of κ and ψ at one damping.
     #[staticmethod]
-    #[pyo3(signature = (kappa, psi, damping, bound, regions, threads, progress=None))]
+    #[pyo3(signature = (kappa, psi, collisions, bound, regions, threads, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn make(
         py: Python<'_>,
         kappa: (f64, f64),
         psi: (f64, f64),
-        damping: f64,
+        collisions: (f64, LawChoice),
         bound: f64,
         regions: bool,
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let window = TableWindow::Scaled { kappa: range(kappa), psi: range(psi), damping };
+        let (damping, law) = collisions;
+        let (law, tangential_damping) = law.law()?;
+        let (kappa, psi) = (range(kappa), range(psi));
+        let window = TableWindow::Scaled { kappa, psi, damping, law, tangential_damping };
         Self::of(py, TableSettings { window, bound, regions }, threads, progress.as_ref())
     }
 
@@ -164,7 +168,7 @@ impl RestitutionTable {
         let work = move |report: Report<'_>| tables::run(&settings, report);
         let made = watched(py, threads, progress, work)?;
         made.map(Self).map_err(|error| match error {
-            TableError::Settings(_) | TableError::Law => bad_input(error),
+            TableError::Settings(_) => bad_input(error),
             TableError::Atlas(error) => of_atlas(&error),
             error => failed(error),
         })

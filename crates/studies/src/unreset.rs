@@ -95,6 +95,7 @@ pub fn collide(contact: Contact) -> Result<UnresetCollision, CollisionError> {
     collision.energy = EnergyLedger {
         tangential_initial: 0.5 * contact.psi() * contact.psi(),
         tangential_final: 0.5 * velocity * velocity,
+        tangential_damping: 0.0,
         sliding,
         spring_left: 0.5 * system.stored(run.mode, &run.state),
         normal_initial: 0.5,

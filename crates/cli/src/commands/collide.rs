@@ -25,7 +25,7 @@ use crate::shared::method::MethodArguments;
 #[derive(Debug, clap::Args)]
 #[command(long_about = ABOUT, after_long_help = EXAMPLES)]
 pub struct CollideArguments {
-    /// Scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖) of the tangential spring; above 0
+    /// Scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖) of the tangential spring; 0 or above
     #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
     pub kappa: Option<f64>,

@@ -322,6 +322,8 @@ Other laws have other constants in \"surface\", beside \"friction\":
   damping                damping_coefficient in kg/(s m^e), e = 0, 1/2, 1/4 as the law says; or
                          damping_time_s (viscoelastic with Hertz; both linear), or damping_ratio
                          without unit (Tsuji with Hertz; both linear)
+  hysteretic force       unloading_stiffness_ratio, k2/k1, 1 or above
+  hardening              hardening_per_m, (k2/k1 - 1)/(greatest overlap)
   tangential damping     tangential_damping_ratio, without unit [default: 0]
 
 Velocities: --normal and --tangential, or --speed and --angle, are those of the surfaces of bodies

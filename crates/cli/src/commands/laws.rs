@@ -205,14 +205,14 @@ List the contact laws that have names, or print one of them: those of particle c
 own keywords, with their equations, where these were read, and what was compared.
 
 A law consists of eight terms, in JSON and here: normal (linear, hertz), damping (none, linear, \
-viscoelastic, tsuji), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
+viscoelastic, tsuji, hysteretic, hardening), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
 limit_damping (true, false), end (force, overlap), coulomb_test (total, spring). Every combination \
-is a law. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
+is a law, but a hysteretic force goes with a spring of constant stiffness only. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
 holds for the spring alone, the dashpot acts in stick only.
 
 Quantities are scaled: x overlap, v its rate, w tangential velocity, F normal and Q tangential force, \
-y or q history; κ stiffness, a damping, b tangential damping. Hysteretic and adhesive laws have other \
-terms and are not computed.
+y or q history; κ stiffness, a damping, b tangential damping. Adhesive laws, and torques of rolling \
+and twisting, are not computed.
 
 With --out, maps of ε_t and the number of switches, the difference from the paper's law, the forces of a \
 standard impact, and where a law creates energy, for all of them on one page.";

@@ -4,11 +4,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use stickslip_files::input::bodies::read_pair;
+use stickslip_files::input::law::permits;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::{number, range};
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::{json, table_npz};
-use stickslip_model::Law;
 use stickslip_plane::Range;
 use stickslip_practice::tables::{
     self, Table, TableDocument, TableSettings, TableVerification, TableWindow,
@@ -19,6 +19,7 @@ use crate::output::console::{deliver, print};
 use crate::output::text::pairs;
 use crate::shared::collision::damping_for;
 use crate::shared::files::require_different;
+use crate::shared::law::{self, LawArguments};
 use crate::shared::study::refused;
 use crate::shared::threads::ThreadsArguments;
 use crate::version;
@@ -53,7 +54,8 @@ pub struct TableArguments {
     /// JSON file of two bodies as `impact` reads it, for a table over velocities; motions in it are
     /// not used
     #[arg(long, value_name = "FILE.json", help_heading = "Window of velocities")]
-    #[arg(conflicts_with_all = ["kappa", "psi", "damping", "e_n"], requires_all = ["normal", "tangential"])]
+    #[arg(conflicts_with_all = ["kappa", "psi", "damping", "e_n", "tangential_damping"])]
+    #[arg(requires_all = ["normal", "tangential"])]
     pub bodies: Option<PathBuf>,
 
     /// Interval of the normal velocity g_n of the surfaces in m/s, with --bodies; above 0
@@ -66,7 +68,12 @@ pub struct TableArguments {
     #[arg(allow_hyphen_values = true, requires = "bodies", value_parser = range::parse_above_0)]
     pub tangential: Option<Range>,
 
-    /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
+
+    /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3, with other laws than the paper's from
+    /// 1e-9
     #[arg(long, value_name = "E", help_heading = "Table", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option, default_value = "1e-8")]
     pub bound: f64,
@@ -94,7 +101,10 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
     let settings = TableSettings { window: window(arguments)?, bound: *bound, regions: *regions };
     settings.validate().map_err(refused)?;
     let outputs: Vec<_> = out.iter().map(|out| ("--out", Some(out.as_path()))).collect();
-    require_different(&outputs, &[("--bodies", bodies.as_deref())])?;
+    require_different(
+        &outputs,
+        &[("--bodies", bodies.as_deref()), law::file(arguments.law.law.as_deref())],
+    )?;
     tables::require_prefix(prefix).map_err(refused)?;
     let formats = out.iter().map(|out| TableFormat::of(out)).collect::<Result<Vec<_>, _>>()?;
     let files = out.iter().map(|out| OutputFile::create(out)).collect::<Result<Vec<_>, _>>()?;
@@ -117,17 +127,20 @@ pub fn run(arguments: &TableArguments) -> Result<(), Failure> {
 /// The window that the options give: of κ and ψ, or of velocities.
 fn window(arguments: &TableArguments) -> Result<TableWindow, Failure> {
     let TableArguments { kappa, psi, damping, e_n, bodies, normal, tangential, .. } = arguments;
+    let (law, tangential_damping) = arguments.law.chosen()?;
     match (bodies, normal, tangential, kappa, psi) {
         (Some(file), &Some(normal_m_per_s), &Some(tangential_m_per_s), _, _) => {
-            let pair = read_pair(file, Law::PAPER)?;
+            let pair = read_pair(file, law)?;
+            let name = arguments.law.law.as_deref();
+            permits(name, "tangential damping", pair.tangential_damping())?;
             Ok(TableWindow::Velocities { pair, normal_m_per_s, tangential_m_per_s })
         }
         (None, _, _, &Some(kappa), &Some(psi)) => {
             let damping = match *e_n {
-                Some(e_n) => damping_for(Law::PAPER, e_n)?,
+                Some(e_n) => damping_for(law, e_n)?,
                 None => damping.unwrap_or(0.0),
             };
-            Ok(TableWindow::Scaled { kappa, psi, damping })
+            Ok(TableWindow::Scaled { kappa, psi, damping, law, tangential_damping })
         }
         // The parser of the options asks for either.
         _ => {
@@ -202,7 +215,7 @@ Polynomials follow the boundaries on which the switches of a collision change, s
 ε_t stays a kink. The table is compared with collisions in each of its pieces and on both sides of \
 all boundaries. Without the bound there is no table, and the exit code is 1.
 
-The contact law is the paper's. At one damping ε_n is one number, which the table has too; over \
+The contact law is the paper's, or that of --law. At one damping ε_n is one number, which the table has too; over \
 velocities it is a function of g_n.";
 
 /// What `table --help` says last.
@@ -217,6 +230,7 @@ Files:
 Examples:
   stickslip table --kappa 0.5:100 --psi 0.01:3 --out table.h --out table.json
   stickslip table --kappa 1:20 --psi 0.05:2.5 --damping 0.3 --bound 1e-6 --regions --out table.npz
+  stickslip table --kappa 1:20 --psi 0.1:3 --damping 0.2 --law gran/hertz/history --bound 1e-6 --out t.h
   stickslip table --bodies examples/glass_on_wall.json --normal 0.1:10 --tangential 0.01:20 --out t.h
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -121,20 +121,23 @@ fn energy(out: &mut dyn Write, collision: &Collision) -> io::Result<()> {
     let [taken, left] = if collision.contact.obeys_paper() {
         ["taken by sliding, damping", "left in spring, compression"]
     } else {
-        ["lost in slip, taken by damping", "lost in stick, left in compression"]
+        ["taken by friction, damping", "lost to the spring, left in compression"]
     };
     writeln!(out)?;
-    aligned(
-        out,
-        &[
-            ["energy".to_owned(), "tangential".to_owned(), "normal".to_owned()],
-            entry("at impact", ledger.tangential_initial, ledger.normal_initial),
-            entry("motion at the end", ledger.tangential_final, ledger.normal_final),
-            entry(taken, ledger.sliding, ledger.damping),
-            entry(left, ledger.spring_left, ledger.compression_left),
-            entry("unbalanced", ledger.tangential_unbalanced(), ledger.normal_unbalanced()),
-        ],
-    )
+    let dashpot = (ledger.tangential_damping != 0.0)
+        .then(|| entry("taken by the tangential dashpot", ledger.tangential_damping, 0.0));
+    let rows = [
+        ["energy".to_owned(), "tangential".to_owned(), "normal".to_owned()],
+        entry("at impact", ledger.tangential_initial, ledger.normal_initial),
+        entry("motion at the end", ledger.tangential_final, ledger.normal_final),
+        entry(taken, ledger.sliding, ledger.damping),
+    ];
+    let rest = [
+        entry(left, ledger.spring_left, ledger.compression_left),
+        entry("unbalanced", ledger.tangential_unbalanced(), ledger.normal_unbalanced()),
+    ];
+    let rows: Vec<_> = rows.into_iter().chain(dashpot).chain(rest).collect();
+    aligned(out, &rows)
 }
 
 fn entry(name: &str, tangential: f64, normal: f64) -> [String; 3] {

@@ -11,7 +11,7 @@ use crate::error::Failure;
 /// The parameters of collisions beside κ and ψ. Each command shows them under a heading of its own.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct CollisionArguments {
-    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
+    /// Coefficient of friction μ, with --ratio; 0 or above [default: 0.4]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
     pub mu: Option<f64>,
@@ -72,7 +72,12 @@ pub fn window(
     let impact = match ImpactParameter::new(psi_or_ratio, (mu, alpha)).map_err(refused)? {
         ImpactParameter::Psi(psi) => ImpactRange::Psi(psi),
         ImpactParameter::Ratio(range) => {
-            ImpactRange::Ratio(RatioRange { range, reduction: reduction(mu, alpha) })
+            let reduction = reduction(mu, alpha);
+            if reduction.mu == 0.0 {
+                let expected = "expected --mu above 0: without friction ε_t is 1 everywhere";
+                return Err(Failure::Usage(format!("--mu 0 with an interval; {expected}")));
+            }
+            ImpactRange::Ratio(RatioRange { range, reduction })
         }
     };
     Ok((kappa, impact))

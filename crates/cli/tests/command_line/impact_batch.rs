@@ -197,8 +197,8 @@ fn a_row_that_cannot_be_computed_does_not_stop_the_others() {
         (
             7,
             &format!(
-                "line 9: surface.friction = '': empty; expected a finite number above 0, without \
-                 unit, {written}"
+                "line 9: surface.friction = '': empty; expected a finite number, 0 or above, \
+                 without unit, {written}"
             ),
         ),
         (8, "line 10: 3 fields; expected one for each column of the header, 4"),

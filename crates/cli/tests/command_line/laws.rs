@@ -59,6 +59,109 @@ fn restitution_is_an_input() {
     assert!(refused.stderr.contains("no damping of this law has e_n = 0.5"), "{}", refused.stderr);
 }
 
+/// Walton's and Braun's law: as a collision, as bodies, with ε_n as an input, and where it is
+/// refused.
+#[test]
+fn hysteretic_forces_are_a_law_like_others() {
+    let one = "collide --kappa 3 --psi 0.4 --law walton-braun --e-n 0.5 --format json";
+    let found: Value = serde_json::from_str(&stickslip(one).stdout).unwrap();
+    assert_eq!(found["parameters"]["damping"], 3.0);
+    assert!((found["eps_n"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{found}");
+    let refused = stickslip(&format!("{one} --tangential-damping 0.1"));
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("tangential"), "{}", refused.stderr);
+
+    let directory = Workspace::new();
+    let sphere = json!({
+        "radius_m": 1e-3,
+        "material": { "young_modulus_pa": 1e7, "poisson_ratio": 0.3, "density_kg_per_m3": 2500 },
+    });
+    let bodies = |surface: Value| json!({ "spheres": [sphere, sphere], "surface": surface });
+    let surface = json!({
+        "friction": 0.5,
+        "normal_stiffness_kg_per_s2": 5e4,
+        "tangential_stiffness_kg_per_s2": 4e4,
+        "unloading_stiffness_ratio": 4,
+    });
+    directory.write("bodies.json", bodies(surface.clone()).to_string());
+    let impact = "impact bodies.json --normal 0.1 --tangential 0.05 --format json --law";
+    let ran = directory.run(&format!("{impact} walton-braun"));
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert!((found["eps_n"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{}", ran.stderr);
+    let other = directory.run(&format!("{impact} walton-braun/hardening"));
+    assert!(
+        other.stderr.contains("unloading_stiffness_ratio = 4 has no meaning"),
+        "{}",
+        other.stderr
+    );
+    // Without friction, and without a spring.
+    for (name, at) in [("friction", 0.0), ("tangential_stiffness_kg_per_s2", 0.0)] {
+        let mut surface = surface.clone();
+        surface[name] = json!(at);
+        directory.write("bodies.json", bodies(surface).to_string());
+        let ran = directory.run(&format!("{impact} walton-braun"));
+        let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+        assert_eq!(found["eps_t"], 1.0, "{}", ran.stderr);
+        assert_eq!(found["itinerary"], if name == "friction" { "+" } else { "o" });
+    }
+    let trace = "trace --kappa 1:4 --psi 0.3:2 --damping 0.4 --law walton-braun --out atlas.json";
+    let refused = directory.run(trace);
+    assert_ne!(refused.code, 0);
+    assert!(refused.stderr.contains("which is not traced"), "{}", refused.stderr);
+}
+
+/// μ = 0 and κ = 0 as options and in batches, and where they have no meaning.
+#[test]
+fn no_friction_and_no_spring_are_limits() {
+    for options in ["--kappa 3 --ratio 0.7 --mu 0", "--kappa 0 --psi 0.5", "--kappa 0 --ratio 1"] {
+        let ran = stickslip(&format!("collide {options} --damping 0.2 --format json"));
+        let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+        assert_eq!((&found["eps_t"], &found["switch_count"]), (&json!(1.0), &json!(0)));
+        let paper = stickslip("collide --kappa 3 --psi 0.5 --damping 0.2 --format json");
+        let paper: Value = serde_json::from_str(&paper.stdout).unwrap();
+        assert_eq!(found["eps_n"], paper["eps_n"]);
+    }
+    let directory = Workspace::new();
+    directory.write("in.csv", "kappa,ratio,mu\n3,0.7,0\n0,0.7,0.4\n3,0.7,0.4\n3,0.7,-1\n");
+    let ran = directory.run("collide --batch in.csv --law gran/hooke/history --damping 0.2");
+    let rows = rows(&ran.stdout);
+    let column = rows[0].iter().position(|name| name == "eps_t").unwrap();
+    let eps_t: Vec<_> = rows[1..4].iter().map(|row| row[column].parse::<f64>().unwrap()).collect();
+    assert!(eps_t[..2] == [1.0, 1.0] && eps_t[2] < 0.9, "{}", ran.stdout);
+    assert!(ran.stdout.contains("out of range; expected a finite number, 0 or above"));
+    for (command, why) in [
+        (
+            "collide --kappa 0 --psi 0.5 --damping 0.2 --law gran/hooke/history \
+          --tangential-damping 1",
+            "or a law without history",
+        ),
+        ("trace --kappa 1:2 --ratio 0.5:1 --mu 0 --out atlas.json", "without friction"),
+        ("trace --kappa 0:2 --psi 0.5:1 --out atlas.json", "LO > 0"),
+        ("map --kappa 1:2 --ratio 0.5:1 --mu 0 --size 4x4 --out map.csv", "without friction"),
+    ] {
+        let refused = directory.run(command);
+        assert_eq!(refused.code, 2, "{command}");
+        assert!(refused.stderr.contains(why), "{}", refused.stderr);
+    }
+}
+
+/// Laws that are not computed say so by their names.
+#[test]
+fn laws_that_are_not_computed_say_why() {
+    for (name, why) in [
+        ("granular/jkr", "adhesion is not computed"),
+        ("dmt", "adhesion is not computed"),
+        ("rolling/sds", "rolling and twisting friction are not computed"),
+        ("thornton", "Thornton's elastic-plastic force is not computed"),
+    ] {
+        for command in [format!("laws {name}"), format!("collide --kappa 3 --psi 1 --law {name}")] {
+            let refused = stickslip(&command);
+            assert_eq!(refused.code, 2, "{command}");
+            assert!(refused.stderr.contains(why), "{}", refused.stderr);
+        }
+    }
+}
+
 #[test]
 fn a_law_without_history_needs_no_stiffness() {
     let ran = stickslip(

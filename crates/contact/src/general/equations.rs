@@ -6,8 +6,8 @@ use stickslip_solver::Number;
 
 use super::exponents::Exponents;
 use super::{
-    Beginning, DAMPING, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage,
-    T as TIME, U, V, W,
+    Beginning, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING,
+    STATE, Stage, T as TIME, U, V, W,
 };
 use crate::contact::Contact;
 use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side, is_open};
@@ -43,6 +43,8 @@ impl<T> Index<u8> for Powers<T> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Equations {
     pub exponents: Exponents,
+    /// The factor of a hysteretic force while the overlap falls, 1 + a.
+    rebound: f64,
     kappa: f64,
     damping: f64,
     /// The part of the tangential damping that Coulomb's limit holds for.
@@ -75,7 +77,9 @@ struct Jet<T>(T, T, T);
 impl Equations {
     pub fn new(contact: &Contact) -> Self {
         let exponents = Exponents::new(contact);
-        let (kappa, a) = (contact.kappa(), contact.damping());
+        let kappa = contact.kappa();
+        let a = if exponents.damped { contact.damping() } else { 0.0 };
+        let rebound = if exponents.hysteretic { 1.0 + contact.damping() } else { 1.0 };
         let strong = a >= STRONG;
         let by_v = if strong { a.powi(-3) } else { 1.0 };
         let omega = if exponents.remembers { kappa.sqrt() } else { 0.0 };
@@ -84,6 +88,7 @@ impl Equations {
         let velocity_unit = contact.psi().min(1.0);
         Self {
             exponents,
+            rebound,
             kappa,
             damping: a,
             tangential_damping,
@@ -200,6 +205,11 @@ impl Equations {
         [Some(1.0 - spring), None]
     }
 
+    /// Tangential energy that the dashpot has taken.
+    pub fn taken_by_dashpot(&self, y: &[f64; STATE]) -> f64 {
+        y[DASHPOT] * self.velocity_unit * self.velocity_unit
+    }
+
     /// Reduced tangential velocity w.
     #[inline(always)]
     pub fn velocity<T: Number>(&self, y: &[T; STATE]) -> T {
@@ -219,14 +229,15 @@ impl Equations {
 
     /// F/u^d, whose sign is that of the normal force.
     #[inline(always)]
-    fn push<T: Number>(&self, u: &Powers<T>, y: &[T; STATE]) -> T {
-        y[V] * self.force_by_v + u[self.exponents.bend] * self.force_by_u
+    fn push<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> T {
+        let factor = if stage == Stage::Unloading { self.rebound } else { 1.0 };
+        y[V] * self.force_by_v + u[self.exponents.bend] * (self.force_by_u * factor)
     }
 
     /// The normal force.
-    pub fn normal_force(&self, y: &[f64; STATE]) -> f64 {
+    pub fn normal_force(&self, stage: Stage, y: &[f64; STATE]) -> f64 {
         let u = &powers(y[U]);
-        u[self.exponents.d] * self.push(u, y)
+        u[self.exponents.d] * self.push(stage, u, y)
     }
 
     /// The size Q of the tangential force of spring and dashpot, divided by u^m.
@@ -267,7 +278,7 @@ impl Equations {
     /// The right-hand side of a slip phase.
     #[inline(always)]
     pub fn slip<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
-        let (mut slope, dv) = self.normal(&powers(y[U]), y);
+        let (mut slope, dv) = self.normal(mode.stage, &powers(y[U]), y);
         slope[W] = dv * (mode.side.sign() * mode.stage.sign() / self.velocity_unit);
         slope
     }
@@ -278,10 +289,14 @@ impl Equations {
         let e = self.exponents;
         let of = e.of(mode.stage);
         let u = &powers(y[U]);
-        let (mut slope, _) = self.normal(u, y);
+        let (mut slope, _) = self.normal(mode.stage, u, y);
         let pull = self.pull(mode.stage, u, y);
         slope[W] = u[e.last + of.shared] * pull * (-f64::from(e.n) / self.velocity_unit);
         slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
+        if self.dashpot > 0.0 {
+            let per_w = f64::from(e.n) * self.dashpot / self.velocity_unit;
+            slope[DASHPOT] = u[e.last + e.d] * y[W] * y[W] * per_w;
+        }
         slope
     }
 
@@ -299,11 +314,11 @@ impl Equations {
 
     /// The right-hand side of the normal motion, and the rate of v.
     #[inline(always)]
-    fn normal<T: Number>(&self, u: &Powers<T>, y: &[T; STATE]) -> ([T; STATE], T) {
+    fn normal<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> ([T; STATE], T) {
         let e = self.exponents;
         let n = f64::from(e.n);
         let v = self.rate(u, y);
-        let dv = u[e.last + e.d] * self.push(u, y) * -n;
+        let dv = u[e.last + e.d] * self.push(stage, u, y) * -n;
         let mut slope = [T::from(0.0); STATE];
         slope[U] = v;
         slope[V] = (dv - lowered(u, e.bend) * v * self.by_u) * self.per_v;
@@ -322,7 +337,7 @@ impl Equations {
         let of = e.of(mode.stage);
         let n = f64::from(e.n);
         let v = self.rate(u, y);
-        let push = self.push(u, y);
+        let push = self.push(mode.stage, u, y);
         let damping = if e.damped { self.damping } else { 0.0 };
         // dv/ds = −n u^k F/u^d, with k = n − 1 + d.
         let k = e.last + e.d;
@@ -364,7 +379,7 @@ impl Equations {
         let u = &powers(y[U]);
         let of = e.of(mode.stage);
         let v = self.rate(u, y);
-        let push = self.push(u, y);
+        let push = self.push(mode.stage, u, y);
         let end = if e.damped && mode.stage != Stage::Tail { push } else { y[U] };
         let (end, same, other) = match mode.regime {
             Regime::Slip if e.remembers => (end, self.stretching(mode, u, y), T::from(1.0)),
@@ -409,7 +424,7 @@ impl Equations {
         let (side, sign) = (mode.side.sign(), mode.stage.sign());
         let (n, w) = (f64::from(e.n), self.velocity(y));
         let v = self.rate(u, y);
-        let push = self.push(u, y);
+        let push = self.push(mode.stage, u, y);
         // One power more than that of the term, so that it is not negative.
         let power = |more: u8| u[more - of.leading];
         let mut sum = power(e.last + e.r + 1) * w * (n * self.kappa * side);
@@ -446,7 +461,7 @@ impl Equations {
         let size = match next.progress {
             // The limit is zero, and so is the spring.
             Progress::Touched => 0.0,
-            _ => u[self.exponents.d - of.shared] * self.push(u, y) * next.stage.sign(),
+            _ => u[self.exponents.d - of.shared] * self.push(next.stage, u, y) * next.stage.sign(),
         };
         let mut y = *y;
         y[TIME] = 0.0;
@@ -492,7 +507,8 @@ impl Equations {
     /// rounding of 0. One that falls there is on its way to a graze.
     pub fn is_at_limit(&self, mode: Mode, y: &[f64; STATE]) -> bool {
         let u = &powers(y[U]);
-        let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared] * self.push(u, y);
+        let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared]
+            * self.push(mode.stage, u, y);
         let near = (y[GAP] * self.scale).abs() < AT_LIMIT * limit;
         mode.regime == Regime::Stick && near && y[RATE] >= 0.0
     }
@@ -506,13 +522,36 @@ impl Equations {
         y
     }
 
-    /// The state at greatest compression, with the history that is carried from there on.
+    /// The state at greatest compression, with the history that is carried from there on and the
+    /// overlap that a hysteretic force is left with.
     pub fn turn(&self, y: &[f64; STATE]) -> [f64; STATE] {
         let e = self.exponents;
         let carried = i32::from(e.of(Stage::Main).rho) - i32::from(e.of(Stage::Unloading).rho);
         let mut y = *y;
         y[SPRING] *= y[U].powi(carried);
+        if e.hysteretic {
+            // The force is the same before and behind, and all energy is in the compression.
+            y[U] *= self.rebound.powf(-1.0 / f64::from(e.p));
+            y[DAMPING] = 0.5 * self.lost_part();
+        }
         y
+    }
+
+    /// The part of the greatest overlap that is left where a hysteretic force ends, which is the
+    /// part of the energy that it takes.
+    fn lost_part(&self) -> f64 {
+        let e = self.exponents;
+        -(-f64::from(e.n) / f64::from(e.p) * self.rebound.ln()).exp_m1()
+    }
+
+    /// The overlap that a hysteretic force leaves in a stage.
+    pub fn left_over(&self, stage: Stage) -> f64 {
+        let e = self.exponents;
+        if !e.hysteretic || stage != Stage::Unloading {
+            return 0.0;
+        }
+        let greatest = if e.n == e.p { 1.0 } else { 1.25_f64.powf(0.4) };
+        greatest * self.lost_part()
     }
 }
 

@@ -14,7 +14,8 @@ use crate::law::{Damping, HistoryOf, Law, Normal, Tangential};
 /// ```
 ///
 /// where h is the history, scaled by a power of x: what is rescaled while the overlap falls is
-/// constant then over √x. Without damping d = p and F = u^p.
+/// constant then over √x. Without damping d = p and F = u^p. A hysteretic force is the same with
+/// x − x₀ in place of x while the overlap falls, and with a factor.
 #[expect(clippy::struct_excessive_bools, reason = "each leaves out a term of the equations")]
 #[derive(Clone, Copy, Debug)]
 pub struct Exponents {
@@ -30,10 +31,12 @@ pub struct Exponents {
     pub bend: u8,
     /// The power of u in the stiffness.
     pub r: u8,
-    /// Whether there is damping.
+    /// Whether there is viscous damping.
     pub damped: bool,
     /// Whether there is damping with b ≠ 1, so that the dashpots leave a term in the guard of slip.
     pub uneven: bool,
+    /// Whether the normal force is hysteretic.
+    pub hysteretic: bool,
     /// Whether the history is rescaled while the overlap falls.
     pub rescaled: bool,
     /// Whether there is a history.
@@ -58,7 +61,7 @@ pub struct OfStage {
 impl Exponents {
     pub fn new(contact: &Contact) -> Self {
         let law = contact.law();
-        let damped = contact.damping() > 0.0;
+        let damped = contact.damping() > 0.0 && law.damping.is_viscous();
         let n = order(law, damped);
         let half = n / 2;
         let p = match law.normal {
@@ -67,9 +70,9 @@ impl Exponents {
         };
         let d = match law.damping {
             _ if !damped => p,
-            Damping::None | Damping::Linear => 0,
             Damping::Viscoelastic => half,
             Damping::Tsuji => half / 2,
+            _ => 0,
         };
         let r = if law.tangential == Tangential::Mindlin { half } else { 0 };
         let last = n - 1;
@@ -90,7 +93,22 @@ impl Exponents {
         let unloading = stage(if rescaled { half } else { 0 });
         let (loading, bend) = (stage(0), p - d);
         let remembers = law.remembers();
-        Self { n, last, p, d, bend, r, damped, uneven, rescaled, remembers, loading, unloading }
+        let hysteretic = law.damping.is_hysteretic();
+        Self {
+            n,
+            last,
+            p,
+            d,
+            bend,
+            r,
+            damped,
+            uneven,
+            hysteretic,
+            rescaled,
+            remembers,
+            loading,
+            unloading,
+        }
     }
 
     /// The powers of a stage.

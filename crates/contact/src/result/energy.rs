@@ -16,25 +16,39 @@ pub struct EnergyLedger {
     pub tangential_final: f64,
     /// Tangential energy taken by Coulomb sliding, ∫ F (s w − dL/dt) dt over all slip phases. In
     /// other laws than the paper's, where what the spring holds is not always finite: the kinetic
-    /// energy lost in slip, ∫ |F| s w dt.
+    /// energy lost in slip, ∫ |F| s w dt, to friction.
     pub sliding: f64,
+    /// Tangential energy taken by the dashpot in stick, ∫ b η w² dt; 0 in the paper's law. In slip
+    /// all is taken by friction.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_zero"))]
+    pub tangential_damping: f64,
     /// Tangential energy left in the spring at the end, κ y²/2. In other laws than the paper's: the
-    /// kinetic energy lost in stick, to spring and dashpot; part of it comes back in slip.
+    /// kinetic energy lost in stick to the spring; part of it comes back in slip.
     pub spring_left: f64,
     /// Normal energy at impact, ½.
     pub normal_initial: f64,
     /// Normal kinetic energy at the end, ε_n²/2.
     pub normal_final: f64,
-    /// Normal energy taken by damping, ∫ a √x ẋ² dt.
+    /// Normal energy taken by damping, ∫ a √x ẋ² dt, or by hysteresis.
     pub damping: f64,
     /// Normal energy left in the compression at the end, (2/5) x^{5/2}; 0 without damping.
     pub compression_left: f64,
 }
 
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 impl EnergyLedger {
     /// Tangential energy that the ledger does not explain.
     pub fn tangential_unbalanced(&self) -> f64 {
-        self.tangential_initial - self.tangential_final - self.sliding - self.spring_left
+        self.tangential_initial
+            - self.tangential_final
+            - self.sliding
+            - self.tangential_damping
+            - self.spring_left
     }
 
     /// Normal energy that the ledger does not explain.
@@ -51,6 +65,7 @@ impl EnergyLedger {
             ("tangential_initial", self.tangential_initial),
             ("tangential_final", self.tangential_final),
             ("sliding", self.sliding),
+            ("tangential_damping", self.tangential_damping),
             ("spring_left", self.spring_left),
             ("normal_initial", self.normal_initial),
             ("normal_final", self.normal_final),

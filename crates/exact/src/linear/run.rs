@@ -28,12 +28,14 @@ struct Run<'a, 'c> {
     collision: &'c mut Collision,
     /// The kinetic energy lost in slip.
     sliding: f64,
+    /// Energy that the dashpot has taken in stick.
+    dashpot: f64,
 }
 
 /// Computes the collision of a contact.
 pub fn run(linear: &Linear, collision: &mut Collision) -> Result<(), ExactError> {
     let mut phase = first(linear, collision);
-    let mut run = Run { linear, collision, sliding: 0.0 };
+    let mut run = Run { linear, collision, sliding: 0.0, dashpot: 0.0 };
     let velocity = loop {
         let next = match &phase {
             Phase::Stick(stick) => run.stick(stick),
@@ -82,6 +84,7 @@ impl<'a> Run<'a, '_> {
             let end = stick.end();
             let [velocity, _] = stick.motion_at(end.since);
             self.collision.reversals += stick.reversals(end.since, velocity);
+            self.dashpot += stick.taken_by_dashpot(end.since);
             // Limit and spring vanish together.
             if stick.stage == Stage::Main && self.linear.normal.attracts {
                 let tail = (Stage::Tail, self.linear.normal.zero());
@@ -96,6 +99,7 @@ impl<'a> Run<'a, '_> {
         };
         let Release { place, side, velocity, excess } = release;
         self.collision.reversals += stick.reversals(place.since, velocity);
+        self.dashpot += stick.taken_by_dashpot(place.since);
         let moment = stick.start.after(place);
         let (limit, _) = self.linear.normal.limit(stick.stage, &moment);
         self.switch(&moment, (Regime::Slip, side), side.sign() * limit, velocity);
@@ -174,7 +178,7 @@ impl<'a> Run<'a, '_> {
 
     /// Closes the account with the velocity at the end.
     fn finish(self, velocity: f64) {
-        let Self { linear: Linear { normal, .. }, collision, sliding } = self;
+        let Self { linear: Linear { normal, .. }, collision, sliding, dashpot } = self;
         collision.eps_n = normal.restitution();
         collision.final_velocity = velocity;
         collision.contact_time = normal.force_ends + normal.rest;
@@ -185,7 +189,8 @@ impl<'a> Run<'a, '_> {
             tangential_initial,
             tangential_final,
             sliding,
-            spring_left: tangential_initial - tangential_final - sliding,
+            tangential_damping: dashpot,
+            spring_left: tangential_initial - tangential_final - sliding - dashpot,
             normal_initial: 0.5,
             normal_final: 0.5 * collision.eps_n * collision.eps_n,
             damping,

@@ -134,6 +134,23 @@ impl<'a> Stick<'a> {
         ]
     }
 
+    /// The energy that the dashpot takes in a part of the phase: what the motion loses and the
+    /// spring does not hold.
+    pub fn taken_by_dashpot(&self, since: f64) -> f64 {
+        let c = self.linear.dashpot;
+        if c == 0.0 {
+            return 0.0;
+        }
+        let response = self.linear.spring.after(since);
+        let integral = self.linear.spring.position_integral(since, &response);
+        let [velocity, force] = self.motion_at(since);
+        let began = self.velocity;
+        let first = if self.relaxed { c * began } else { self.force };
+        let moved = began * (response.s + c * integral) - first * integral;
+        let spring = 0.5 * (first - c * began + force - c * velocity);
+        0.5 * (began - velocity) * (began + velocity) - moved * spring
+    }
+
     /// How often w changes its sign until it is `now`.
     pub fn reversals(&self, since: f64, now: f64) -> usize {
         let Self { velocity, .. } = *self;

@@ -44,6 +44,9 @@ pub fn by_name_or_file(text: Option<&str>) -> Result<Law, FileError> {
 /// [`FileError::Option`]: there is none.
 pub fn named(name: &str) -> Result<Preset, FileError> {
     presets::find(name).ok_or_else(|| {
+        if let Some(why) = presets::refusal(name) {
+            return FileError::Option(format!("no contact law is named {name:?}: {why}"));
+        }
         let expected = "expected a name that `stickslip laws` lists";
         FileError::Option(format!("no contact law is named {name:?}; {expected}{}", near(name)))
     })
@@ -58,6 +61,9 @@ fn near(name: &str) -> String {
 /// The law in the file at `path`.
 fn read(path: &Path) -> Result<Law, FileError> {
     if !source::is_standard_input(path) && !path.exists() {
+        if let Some(why) = presets::refusal(&path.to_string_lossy()) {
+            return Err(FileError::input(path, format!("is neither a file nor a law: {why}")));
+        }
         let near = near(&path.to_string_lossy());
         let reason = format!("is neither a file nor a name that `stickslip laws` lists{near}");
         return Err(FileError::input(path, reason));

@@ -12,7 +12,7 @@ use crate::input::parameter::Parameter;
 pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, String> {
     let Range { low, high } = parse(text)?;
     match (parameter.check(low), parameter.check(high)) {
-        (Ok(low), Ok(high)) => Ok(Range { low, high }),
+        (Ok(low), Ok(high)) if low > 0.0 => Ok(Range { low, high }),
         _ => Err(ZERO.to_owned()),
     }
 }
@@ -88,8 +88,7 @@ pub fn parse(text: &str) -> Result<Range, String> {
 const EXPECTED: &str =
     "expected LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
 /// What is wrong where both ends have to be collisions.
-const ZERO: &str = "there is no collision at 0, and the boundaries near it have no end; expected \
-                    LO:HI with LO > 0";
+const ZERO: &str = "boundaries near 0 have no end; expected LO:HI with LO > 0";
 
 /// The numbers of columns and rows of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

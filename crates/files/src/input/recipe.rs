@@ -156,12 +156,12 @@ impl Recipe {
             }
         };
         let said = |error: &dyn Display| error.to_string();
-        let psi = match self.impact {
-            ImpactParameter::Psi(psi) => value(psi)?,
+        let (psi, rubs) = match self.impact {
+            ImpactParameter::Psi(psi) => (value(psi)?, true),
             ImpactParameter::Ratio(ratio) => {
                 let ratio = value(ratio)?;
                 let (alpha, mu) = (value(self.alpha)?, value(self.mu)?);
-                reduced(&Reduction { mu, alpha }, ratio)?
+                (reduced(&Reduction { mu, alpha }, ratio)?, mu > 0.0)
             }
         };
         let tangential_damping = value(self.tangential_damping)?;
@@ -174,6 +174,7 @@ impl Recipe {
         let contact = Contact::new(value(self.kappa)?, psi, damping);
         contact
             .and_then(|contact| contact.with_law(self.law, tangential_damping))
+            .map(|contact| if rubs { contact } else { contact.without_friction() })
             .map_err(|error| said(&error))
     }
 }

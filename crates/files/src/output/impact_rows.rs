@@ -40,7 +40,7 @@ const SPHERES: [[&str; 6]; 2] = [
 ];
 
 /// The columns after those of the spheres.
-const ACCOUNT: [&str; 15] = [
+const ACCOUNT: [&str; 16] = [
     "patch_impact_angle_rad",
     "patch_rebound_angle_rad",
     "centre_e_t",
@@ -52,6 +52,7 @@ const ACCOUNT: [&str; 15] = [
     "work_of_wall_j",
     "sliding_j",
     "damping_j",
+    "tangential_damping_j",
     "spring_left_j",
     "compression_left_j",
     "unbalanced_j",
@@ -108,6 +109,7 @@ pub fn write(rows: &mut Rows, impact: &ImpactReport, status: &str) {
     rows.number(energy.work_of_wall_j);
     rows.number(energy.sliding_j);
     rows.number(energy.damping_j);
+    rows.number(energy.tangential_damping_j);
     rows.number(energy.spring_left_j);
     rows.number(energy.compression_left_j);
     rows.number(energy.unbalanced_j());

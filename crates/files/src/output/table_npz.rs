@@ -3,6 +3,7 @@
 use std::io;
 
 use rawzip::ZipArchiveWriter;
+use stickslip_model::Law;
 use stickslip_practice::tables::{ACROSS, ALONG, Table, TableWindow};
 
 use super::npz::{array, number, plain, text};
@@ -68,7 +69,13 @@ pub fn archive(table: &Table, program: &str) -> io::Result<Vec<u8>> {
         ("largest_error_of_eps_n", table.verification.largest_error_of_eps_n),
     ];
     match table.window {
-        TableWindow::Scaled { damping, .. } => numbers.push(("damping", damping)),
+        TableWindow::Scaled { damping, law, tangential_damping, .. } => {
+            numbers.push(("damping", damping));
+            if law != Law::PAPER {
+                numbers.push(("tangential_damping", tangential_damping));
+                text(&mut archive, "law", &serde_json::to_string(&law)?)?;
+            }
+        }
         TableWindow::Velocities { pair, .. } => {
             text(&mut archive, "pair", &serde_json::to_string(&pair)?)?;
         }

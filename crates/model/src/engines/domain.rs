@@ -3,7 +3,8 @@
 use stickslip_contact::Contact;
 use stickslip_contact::domain::{Domain, OutOfDomain};
 
-/// The range of the integrators without damping.
+/// The range of the integrators without viscous damping; a hysteretic force has the damping
+/// k₂/k₁ − 1.
 ///
 /// Below this ψ, rounding of v costs too many digits of w.
 const UNDAMPED: Domain = Domain {
@@ -11,10 +12,10 @@ const UNDAMPED: Domain = Domain {
     kappa: (1e-20, 1e10),
     psi: (1e-13, 1e30),
     pull: (1e-33, 1e40),
-    damping: (0.0, 0.0),
+    damping: (0.0, 1e4),
 };
 
-/// The range of the integrators with damping.
+/// The range of the integrators with viscous damping.
 ///
 /// The first stick phase is (a/κψ)² long: with a weaker damping it may be lost or invented, within
 /// the tolerance of a step. A stronger damping leaves a force of −x/a² at the end, which
@@ -29,5 +30,6 @@ const DAMPED: Domain = Domain {
 
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
-    if contact.damping() > 0.0 { DAMPED.check(contact) } else { UNDAMPED.check(contact) }
+    let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
+    if damped { DAMPED.check(contact) } else { UNDAMPED.check(contact) }
 }

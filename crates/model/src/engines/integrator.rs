@@ -244,6 +244,7 @@ impl Collider {
         collision.energy = EnergyLedger {
             tangential_initial: 0.5 * contact.psi() * contact.psi(),
             tangential_final: 0.5 * collision.final_velocity * collision.final_velocity,
+            tangential_damping: 0.0,
             sliding,
             spring_left: 0.0,
             normal_initial: 0.5,
@@ -334,7 +335,8 @@ impl Collider {
         let onset = contact.damping() / (contact.kappa() * contact.psi());
         // A first phase so much shorter than a step is lost in the rounding of the guard that ends
         // it.
-        if contact.damping() > 0.0 && onset < BRIEF {
+        let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
+        if damped && onset < BRIEF {
             options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
         }
         Ok(options)

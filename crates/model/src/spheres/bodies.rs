@@ -133,7 +133,7 @@ impl Body {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Surface {
-    /// Coulomb's coefficient of friction μ.
+    /// Coulomb's coefficient of friction μ; without friction, 0, ε_t is 1.
     pub friction: f64,
     /// Stiffness k_t of the tangential spring in kg/s².
     pub tangential_stiffness_kg_per_s2: f64,
@@ -178,14 +178,20 @@ impl Reduction {
     /// μ = 0.4 and α = 2/7, homogeneous spheres: the values of all figures of the paper.
     pub const HOMOGENEOUS: Self = Self { mu: 0.4, alpha: 2.0 / 7.0 };
 
-    /// ψ at the impact ratio g_t/g_n.
+    /// ψ at the impact ratio g_t/g_n. Without friction, where ψ has no meaning, (g_t/g_n) α: what
+    /// its place in a contact [without friction](stickslip_contact::Contact::without_friction) has.
     pub fn psi(&self, ratio: f64) -> f64 {
-        ratio * self.alpha / self.mu
+        ratio * self.alpha / self.friction_unit()
     }
 
     /// The impact ratio g_t/g_n at ψ.
     pub fn ratio(&self, psi: f64) -> f64 {
-        psi * self.mu / self.alpha
+        psi * self.friction_unit() / self.alpha
+    }
+
+    /// μ, or 1 without friction.
+    pub fn friction_unit(&self) -> f64 {
+        if self.mu > 0.0 { self.mu } else { 1.0 }
     }
 }
 

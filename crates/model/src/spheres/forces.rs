@@ -18,6 +18,7 @@ use crate::restitution;
 /// F_t = k_t ζ + r γ ξ^e g      (constant), |F_t| ≤ μ |F_n|
 /// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
 /// F_t = r γ ξ^e g              (without history)
+/// F_n = k ξ, k₂ (ξ − ξ₀)       (hysteretic) while ξ grows and falls; F_t = k_t ζ
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -48,7 +49,12 @@ pub struct Constants {
     /// c/√5 where they are Hertz' and Tsuji's. With a contact that lasts until ξ = 0,
     /// ζ = −ln ε_n/√(π² + ln² ε_n).
     pub critical_damping_ratio: Option<f64>,
-    /// Coefficient of normal restitution ε_n, from which γ follows by
+    /// Ratio k₂/k₁ of the stiffnesses of a hysteretic normal force, while ξ falls and grows.
+    pub unloading_stiffness_ratio: Option<f64>,
+    /// What k₂/k₁ − 1 is in 1/m of the greatest overlap, where the damping is `hardening`. Luding's
+    /// law has (k₂ᵐᵃˣ/k₁ − 1)/ξ*, and Walton's and Braun's k₂ = k₁ + S F has S.
+    pub hardening_per_m: Option<f64>,
+    /// Coefficient of normal restitution ε_n, from which γ or k₂/k₁ follows by
     /// [`restitution::damping`].
     pub e_n: Option<f64>,
     /// Normal velocity in m/s at which ε_n is [`e_n`](Self::e_n), in laws where ε_n
@@ -79,6 +85,8 @@ enum Dashpot {
     Ratio(f64),
     /// The scaled damping a at a normal velocity in m/s.
     Scaled(f64, f64),
+    /// What [`Units::damping`] takes of a hysteretic force.
+    Hysteretic(f64),
 }
 
 impl Forces {
@@ -151,7 +159,7 @@ impl Forces {
         let elastic = self.elastic.unwrap_or(hertz);
         let damping_time_s = match self.dashpot {
             Dashpot::Coefficient(gamma) => gamma / elastic,
-            Dashpot::Time(time) => time,
+            Dashpot::Time(time) | Dashpot::Hysteretic(time) => time,
             Dashpot::Ratio(ratio) => ratio * (mass_kg / elastic).sqrt(),
             Dashpot::Scaled(damping, normal_m_per_s) => {
                 let units = Units::new(self.law, elastic / mass_kg, normal_m_per_s);
@@ -191,18 +199,26 @@ impl Dashpot {
             (Normal::Linear, Damping::Linear) | (Normal::Hertz, Damping::Viscoelastic)
         );
         let [has_ratio, damped] = [critical.is_some(), law.damping != Damping::None];
+        let viscous = law.damping.is_viscous();
         // What may be given, and whether the law has it.
         let all = [
-            (&quantity::DAMPING_COEFFICIENT, c.damping_coefficient, damped),
+            (&quantity::DAMPING_COEFFICIENT, c.damping_coefficient, viscous),
             (&quantity::DAMPING_TIME, c.damping_time_s, has_time),
             (&quantity::DAMPING_RATIO, c.damping_ratio, has_ratio),
             (&quantity::CRITICAL_DAMPING_RATIO, c.critical_damping_ratio, has_ratio),
+            (
+                &quantity::UNLOADING_RATIO,
+                c.unloading_stiffness_ratio,
+                law.damping == Damping::Hysteretic,
+            ),
+            (&quantity::HARDENING, c.hardening_per_m, law.damping == Damping::Hardening),
             (&quantity::NORMAL_RESTITUTION, c.e_n, damped),
         ];
         let mut given: Option<(&Quantity, f64)> = None;
         for (quantity, value, has) in all {
             let Some(value) = value else { continue };
-            let none = if quantity.name == quantity::NORMAL_RESTITUTION.name { 1.0 } else { 0.0 };
+            let of_one = [quantity::NORMAL_RESTITUTION.name, quantity::UNLOADING_RATIO.name];
+            let none = if of_one.contains(&quantity.name) { 1.0 } else { 0.0 };
             if !has && (damped || value != none) {
                 unused(quantity, Some(value))?;
             }
@@ -220,7 +236,7 @@ impl Dashpot {
         }
         let Some((quantity, value)) = given.filter(|_| damped) else {
             return if damped {
-                Err(without_damping(has_time, has_ratio).into())
+                Err(without_damping(law, has_time, has_ratio).into())
             } else {
                 Ok(Self::Coefficient(0.0))
             };
@@ -232,6 +248,11 @@ impl Dashpot {
             name if name == quantity::CRITICAL_DAMPING_RATIO.name => {
                 Self::Ratio(value * critical.unwrap_or(f64::NAN))
             }
+            name if name == quantity::UNLOADING_RATIO.name => Self::Hysteretic(value - 1.0),
+            name if name == quantity::HARDENING.name => Self::Hysteretic(value),
+            _ if law.damping == Damping::Hysteretic => {
+                Self::Hysteretic(restitution::damping(law, value)?)
+            }
             _ if has_ratio => Self::Ratio(restitution::damping(law, value)?),
             _ => {
                 let at = required(velocity.0, velocity.1)?;
@@ -242,7 +263,12 @@ impl Dashpot {
 }
 
 /// A damped law without damping.
-fn without_damping(has_time: bool, has_ratio: bool) -> InvalidValue {
+fn without_damping(law: Law, has_time: bool, has_ratio: bool) -> InvalidValue {
+    match law.damping {
+        Damping::Hysteretic => return missing(quantity::UNLOADING_RATIO.name, "it or e_n"),
+        Damping::Hardening => return missing(quantity::HARDENING.name, "it or e_n"),
+        _ => {}
+    }
     let expected = match (has_time, has_ratio) {
         (true, true) => "it, damping_time_s, damping_ratio, critical_damping_ratio or e_n",
         (true, false) => "it, damping_time_s or e_n",

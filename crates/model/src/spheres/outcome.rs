@@ -66,10 +66,12 @@ pub struct EnergyAccount {
     pub work_of_wall_j: f64,
     /// Energy taken by Coulomb sliding; in other laws than the paper's, lost in slip.
     pub sliding_j: f64,
-    /// Energy taken by the damping of the normal force.
+    /// Energy taken by the damping of the normal force, or its hysteresis.
     pub damping_j: f64,
+    /// Energy taken by the tangential dashpot in stick; 0 in the paper's law.
+    pub tangential_damping_j: f64,
     /// Energy left in the tangential spring when the contact ends; in other laws than the paper's,
-    /// lost in stick.
+    /// lost in stick to the spring.
     pub spring_left_j: f64,
     /// Energy left in the compression when the contact ends; 0 without damping.
     pub compression_left_j: f64,
@@ -82,6 +84,7 @@ impl EnergyAccount {
             - self.kinetic_after_j
             - self.sliding_j
             - self.damping_j
+            - self.tangential_damping_j
             - self.spring_left_j
             - self.compression_left_j
     }
@@ -107,7 +110,7 @@ impl Encounter {
         let wall = self.partners.iter().find(|partner| partner.sphere.is_none());
         let kinetic = |motions: [&Motion; 2]| one.energy(motions[0]) + two.energy(motions[1]);
         let normal_unit_j = m * self.normal_m_per_s * self.normal_m_per_s;
-        let slope = pair.surface.friction / alpha;
+        let slope = pair.friction_unit() / alpha;
         let tangential_unit_j =
             if self.tangent.is_some() { alpha * slope * slope * normal_unit_j } else { 0.0 };
         let ledger = &collision.energy;
@@ -117,6 +120,7 @@ impl Encounter {
             work_of_wall_j: wall.map_or(0.0, |wall| impulse.dot(&wall.motion.velocity_m_per_s)),
             sliding_j: ledger.sliding * tangential_unit_j,
             damping_j: ledger.damping * normal_unit_j,
+            tangential_damping_j: ledger.tangential_damping * tangential_unit_j,
             spring_left_j: ledger.spring_left * tangential_unit_j,
             compression_left_j: ledger.compression_left * normal_unit_j,
         };
@@ -140,7 +144,7 @@ impl Encounter {
         let in_si = |switch: &Switch| {
             let of_paper = impact.contact.obeys_paper();
             let spring_m = of_paper.then(|| impact.spring_m(switch.spring));
-            let force = surface.friction * impact.force_unit_n() * impact.contact.kappa();
+            let force = surface.friction * impact.force_unit_n() * impact.contact.force_unit();
             let pull_n = spring_m.map_or(force * switch.spring, |spring_m| {
                 surface.tangential_stiffness_kg_per_s2 * spring_m
             });

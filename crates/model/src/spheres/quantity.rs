@@ -41,13 +41,14 @@ pub const POISSON_RATIO: Quantity = Quantity {
 /// Density.
 pub const DENSITY: Quantity = positive("density_kg_per_m3", "a finite number above 0, in kg/m³");
 /// Coulomb's coefficient of friction μ.
-pub const FRICTION: Quantity = positive("friction", "a finite number above 0, without unit");
+pub const FRICTION: Quantity =
+    not_negative("friction", "a finite number, 0 or above, without unit");
 /// Tangential inertia α of two bodies.
 pub const INERTIA: Quantity =
     Quantity { name: "alpha", expected: "a number above 0, at most 1", range: Range::Share };
 /// Stiffness k_t of the tangential spring.
 pub const TANGENTIAL_STIFFNESS: Quantity =
-    positive("tangential_stiffness_kg_per_s2", "a finite number above 0, in kg/s²");
+    not_negative("tangential_stiffness_kg_per_s2", "a finite number, 0 or above, in kg/s²");
 /// Damping time A of the normal force.
 pub const DAMPING_TIME: Quantity =
     not_negative("damping_time_s", "a finite number, 0 or above, in s");
@@ -59,7 +60,16 @@ pub const HERTZ_STIFFNESS: Quantity =
     positive("hertz_stiffness_kg_per_s2_m0_5", "a finite number above 0, in kg/(s² √m)");
 /// Constant K of Mindlin's tangential stiffness K √ξ.
 pub const MINDLIN_STIFFNESS: Quantity =
-    positive("mindlin_stiffness_kg_per_s2_m0_5", "a finite number above 0, in kg/(s² √m)");
+    not_negative("mindlin_stiffness_kg_per_s2_m0_5", "a finite number, 0 or above, in kg/(s² √m)");
+/// Ratio k₂/k₁ of the stiffnesses of a hysteretic normal force.
+pub const UNLOADING_RATIO: Quantity = Quantity {
+    name: "unloading_stiffness_ratio",
+    expected: "a finite number, 1 or above, without unit",
+    range: Range::AtLeastOne,
+};
+/// Growth of the unloading stiffness with the greatest overlap, k₂/k₁ − 1 over this overlap.
+pub const HARDENING: Quantity =
+    not_negative("hardening_per_m", "a finite number, 0 or above, in 1/m");
 /// Damping γ of the normal force.
 pub const DAMPING_COEFFICIENT: Quantity =
     not_negative("damping_coefficient", "a finite number, 0 or above, in kg/(s mᵉ)");
@@ -96,6 +106,7 @@ pub const ANGLE: Quantity = Quantity {
 enum Range {
     Positive,
     NotNegative,
+    AtLeastOne,
     Poisson,
     Share,
     Acute,
@@ -110,6 +121,7 @@ impl Quantity {
         let ok = match self.range {
             Range::Positive => value > 0.0,
             Range::NotNegative => value >= 0.0,
+            Range::AtLeastOne => value >= 1.0,
             Range::Poisson => value > -1.0 && value <= 0.5,
             Range::Share => value > 0.0 && value <= 1.0,
             Range::Acute => (0.0..FRAC_PI_2).contains(&value),

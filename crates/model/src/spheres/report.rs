@@ -92,9 +92,15 @@ impl ImpactReport {
     }
 
     /// One character for each phase, as [`Collision::itinerary`]; a central impact sticks from its
-    /// start to its end.
+    /// start to its end, and one without friction slips.
     pub fn itinerary(&self) -> String {
-        if self.encounter.is_central() { "o".to_owned() } else { self.collision.itinerary() }
+        if self.encounter.is_central() {
+            "o".to_owned()
+        } else if self.encounter.impact.pair.surface.friction == 0.0 {
+            "+".to_owned()
+        } else {
+            self.collision.itinerary()
+        }
     }
 
     /// The motions of the spheres after the contact, the first body first. A wall is left out.
@@ -139,7 +145,8 @@ impl Comparison {
         let hertz = law.normal == Normal::Hertz;
         let viscoelastic = law.damping == Damping::Viscoelastic && law.end == End::Force;
         let of_paper = hertz && (viscoelastic || !damped);
-        let attracts = damped && law.end == End::Overlap && !law.limit_damping;
+        let viscous = damped && law.damping.is_viscous();
+        let attracts = viscous && law.end == End::Overlap && !law.limit_damping;
         Self {
             eps_n_series: of_paper.then(|| normal::series(contact.damping())),
             eps_n_pade: of_paper.then(|| normal::pade(contact.damping())),

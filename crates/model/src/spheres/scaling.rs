@@ -5,7 +5,7 @@
 
 use stickslip_contact::{Contact, InvalidValue, Law, Normal, Tangential};
 
-use super::bodies::{Body, Material, Sphere, Surface};
+use super::bodies::{Body, Material, Reduction, Sphere, Surface};
 use super::forces::Forces;
 use super::quantity;
 use super::units::Units;
@@ -41,7 +41,9 @@ pub struct BodyPair {
     pub alpha: f64,
     /// The properties of the surfaces. In other laws than the paper's, the stiffness is the
     /// constant K in kg/(s² √m) where it is Mindlin's, and the damping time is the damping γ over
-    /// the elastic constant, in their units; see [`Constants`](super::forces::Constants).
+    /// the elastic constant, in their units. Where the force is hysteretic, the damping time is
+    /// k₂/k₁ − 1, or what that is in 1/m of the greatest overlap; see
+    /// [`Constants`](super::forces::Constants).
     pub surface: Surface,
     /// The contact law.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -128,6 +130,11 @@ impl BodyPair {
         self.tangential_damping_ratio / self.alpha
     }
 
+    /// The number μ by which tangential velocities are reduced: 1 where there is no friction.
+    pub fn friction_unit(&self) -> f64 {
+        Reduction { mu: self.surface.friction, alpha: self.alpha }.friction_unit()
+    }
+
     /// Scaled stiffness κ = (3/2)(5/4)^{1/5} (4G*/E*)/α of a spring with Mindlin's tangential
     /// stiffness.
     ///
@@ -169,11 +176,15 @@ impl BodyPair {
             Tangential::Mindlin => tangential_stiffness_kg_per_s2 * length.sqrt(),
         };
         let kappa = stiffness * time * time / (alpha * self.effective_mass_kg);
-        let psi = tangential_m_per_s / normal_m_per_s * alpha / friction;
+        // A stiffness below the range of numbers is not 0.
+        let ok = kappa > 0.0 || stiffness == 0.0;
+        InvalidValue::check("kappa", kappa, POSITIVE, ok)?;
+        let psi = tangential_m_per_s / normal_m_per_s * alpha / self.friction_unit();
         let damping = units.damping(damping_time_s);
-        let contact = Contact::new(kappa, psi, damping)?;
+        let contact =
+            Contact::new(kappa, psi, damping)?.with_law(law, self.tangential_damping())?;
         Ok(Impact {
-            contact: contact.with_law(law, self.tangential_damping())?,
+            contact: if friction > 0.0 { contact } else { contact.without_friction() },
             pair: *self,
             normal_m_per_s,
             time_unit_s: time,
@@ -233,12 +244,12 @@ impl Impact {
 
     /// Elongation ζ in m of a spring with the reduced elongation y: ζ = (μ/α) y length units.
     pub fn spring_m(&self, spring: f64) -> f64 {
-        self.pair.surface.friction / self.pair.alpha * spring * self.length_unit_m()
+        self.pair.friction_unit() / self.pair.alpha * spring * self.length_unit_m()
     }
 
     /// Tangential velocity in m/s for the reduced velocity w: (μ/α) w g_n.
     pub fn velocity_m_per_s(&self, velocity: f64) -> f64 {
-        self.pair.surface.friction / self.pair.alpha * velocity * self.normal_m_per_s
+        self.pair.friction_unit() / self.pair.alpha * velocity * self.normal_m_per_s
     }
 }
 

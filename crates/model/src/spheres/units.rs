@@ -23,7 +23,8 @@ impl Units {
         Self { law, beta, time, length: normal_m_per_s * time }
     }
 
-    /// The scaled damping a of a damping time in s, to which it is proportional.
+    /// The scaled damping a of a damping time in s, to which it is proportional; of a hysteretic
+    /// force, of k₂/k₁ − 1, or of its growth with the greatest overlap in 1/m.
     pub fn damping(&self, damping_time_s: f64) -> f64 {
         let &Self { law, beta, time, length } = self;
         match (law.normal, law.damping) {
@@ -31,6 +32,9 @@ impl Units {
             (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
             (_, Damping::Linear) => beta * damping_time_s * time,
             (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
+            (_, Damping::Hysteretic) => damping_time_s,
+            (Normal::Linear, Damping::Hardening) => damping_time_s * length,
+            (Normal::Hertz, Damping::Hardening) => damping_time_s * 1.25_f64.powf(0.4) * length,
             (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
         }
     }

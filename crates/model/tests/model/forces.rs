@@ -114,7 +114,7 @@ fn constants_that_do_not_fit_are_refused() {
     };
     assert!(Forces::new(hooke, &complete).is_ok());
     for (constants, expected) in [
-        (Constants { friction: 0.0, ..complete }, "friction = 0.0 is out of range"),
+        (Constants { friction: -0.1, ..complete }, "friction = -0.1 is out of range"),
         (
             Constants { normal_stiffness_kg_per_s2: None, ..complete },
             "normal_stiffness_kg_per_s2 is missing; expected in this law: a finite number above 0",

@@ -5,9 +5,12 @@ use std::f64::consts::TAU;
 use nalgebra::{Rotation3, Unit};
 use stickslip_model::spheres::encounter::TOUCH;
 use stickslip_model::spheres::{
-    Elasticity, Encounter, Motion, Outcome, Sphere, Surface, Vector3, Wall, WallMotion,
+    Body, Constants, Elasticity, Encounter, Forces, Material, Motion, Outcome, Sphere, Surface,
+    Vector3, Wall, WallMotion,
 };
-use stickslip_model::{Collider, InvalidValue};
+use stickslip_model::{Collider, Engine, InvalidValue, presets};
+
+use crate::common::file;
 
 /// Random numbers that depend on the seed alone (splitmix64).
 struct Random(u64);
@@ -310,4 +313,51 @@ fn turned_boosted_and_exchanged(impacts: usize) {
     // Measured: 2.6e-14 and 2.4e-14.
     assert!(turned.0 < 5e-14 && boosted.0 < 5e-14, "{} {}", turned.0, boosted.0);
     assert_eq!(exchanged.0, 0.0, "the same bits");
+}
+
+/// The name of a result, how it is read off an outcome, and the largest error.
+type Compared = (&'static str, fn(&Outcome) -> f64, f64);
+
+/// Thirteen angles of a sphere on a plane, simulated with the displacement history that the code of
+/// Chung and Ooi has.
+#[test]
+fn a_benchmark_of_thirteen_angles_is_met() {
+    let reference = file("chung_ooi_test_4");
+    let number = |name: &str| reference[name].as_f64().unwrap();
+    let material = Material {
+        young_modulus_pa: number("young_modulus_pa"),
+        poisson_ratio: number("poisson_ratio"),
+        density_kg_per_m3: number("density_kg_per_m3"),
+    };
+    let constants = Constants {
+        friction: number("friction"),
+        e_n: Some(number("e_n")),
+        ..Constants::default()
+    };
+    let law = presets::find("granular/hertz/tsuji/mindlin").unwrap().law;
+    let forces = Forces::new(law, &constants).unwrap();
+    let sphere = Sphere::homogeneous(number("radius_m"), &material);
+    let wall = Body::Wall(Wall { elasticity: None });
+    let at = |degrees: f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let speed = number("speed_m_per_s");
+        let velocities = (speed * cosine, speed * sine);
+        let encounter = Encounter::of_velocities(&sphere, &wall, velocities, forces).unwrap();
+        let (collision, _) = Engine::Auto.collide(encounter.contact()).unwrap();
+        encounter.outcome(&collision)
+    };
+    let results: [Compared; 3] = [
+        ("e_t_of_the_centre", |it| it.observed.centre_e_t.unwrap(), 0.011),
+        ("spin_rad_per_s", |it| it.motions[0].spin_rad_per_s.norm(), 8.0),
+        ("rebound_angle_deg", |it| it.observed.patch_rebound_angle_rad.to_degrees(), 1.01),
+    ];
+    for (name, result, bound) in results {
+        let rows = reference[name].as_array().unwrap();
+        assert_eq!(rows.len(), 13);
+        for row in rows {
+            let [angle, expected] = [0, 1].map(|index| row[index].as_f64().unwrap());
+            let found = result(&at(angle));
+            assert!((found - expected).abs() < bound, "{name} at {angle}: {found}, {expected}");
+        }
+    }
 }

@@ -435,3 +435,39 @@ fn names_are_unique_and_laws_are_what_they_say() {
     }
     assert_eq!(presets::find("hooke"), None);
 }
+
+/// What the dashpot takes in stick, by a quadrature of the course: for laws of all kinds, among
+/// them dashpots alone and those beside the Coulomb test.
+#[test]
+fn the_dashpot_takes_what_its_force_does() {
+    for name in [
+        "gran/hooke/history",
+        "granular/hertz/tsuji/mindlin",
+        "granular/hertz/viscoelastic/mindlin",
+        "granular/hertz/tsuji/mindlin_rescale/force",
+        "gran/hooke",
+        "liggghts/hertz/history",
+    ] {
+        let law = presets::find(name).unwrap().law;
+        let (a, b) = (0.3, 0.6);
+        let contact = Contact::new(6.0, 0.7, a).and_then(|it| it.with_law(law, b)).unwrap();
+        let (collision, _, history) = Engine::Auto.followed(contact).unwrap();
+        let eta = |x: f64| match law.damping {
+            Damping::Viscoelastic => a * x.sqrt(),
+            Damping::Tsuji => a * x.sqrt().sqrt(),
+            _ => a,
+        };
+        let mut taken = 0.0;
+        for phase in history.phases().filter(|phase| phase.regime() == Regime::Stick) {
+            let moments: Vec<Snapshot> = phase.samples(4000).collect();
+            let power = |it: &Snapshot| b * eta(it.compression.max(0.0)) * it.velocity.powi(2);
+            let step = |pair: &[Snapshot]| {
+                0.5 * (power(&pair[0]) + power(&pair[1])) * (pair[1].time - pair[0].time)
+            };
+            taken += moments.windows(2).map(step).sum::<f64>();
+        }
+        let found = collision.energy.tangential_damping;
+        assert!(found > 1e-3 && (found - taken).abs() < 1e-6, "{name} {found} {taken}");
+        assert!(collision.energy.tangential_unbalanced().abs() < 1e-12);
+    }
+}

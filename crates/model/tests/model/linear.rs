@@ -71,6 +71,9 @@ fn assert_same(one: &Collision, other: &Collision) {
 fn assert_same_switches(one: &Collision, other: &Collision) {
     let contact = one.contact;
     assert_close(one.energy.sliding, other.energy.sliding, 1e-9, contact);
+    let [dashpot, found] = [one, other].map(|it| it.energy.tangential_damping);
+    assert_close(dashpot, found, 1e-9, contact);
+    assert!(dashpot >= 0.0, "{contact:?}");
     for (one, other) in one.switches.iter().zip(&other.switches) {
         assert_eq!((one.to, one.side), (other.to, other.side), "{contact:?}");
         assert_close(one.time, other.time, 1e-7, contact);

@@ -19,6 +19,7 @@ mod estimates;
 mod exact;
 mod forces;
 mod history;
+mod hysteretic;
 mod impacts;
 mod inside;
 mod largest;

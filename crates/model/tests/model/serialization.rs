@@ -94,7 +94,8 @@ const LAYOUT: &str = "{parameters: {kappa, psi, damping, alpha, effective_mass_k
     itinerary: string, spheres: [{velocity_m_per_s: [number], spin_rad_per_s: [number]}], \
     impulse_n_s: [number], switches: [{time_s, time_left_s, to: string, side, spring_m, \
     velocity_m_per_s, normal_force_n, tangential_force_n}], energy_j: {kinetic_before, \
-    kinetic_after, work_of_wall, sliding, damping, spring_left, compression_left, unbalanced}, \
+    kinetic_after, work_of_wall, sliding, damping, tangential_damping, spring_left, \
+    compression_left, unbalanced}, \
     observed: {beta, patch_psi_1, patch_psi_2, patch_impact_angle_rad, patch_rebound_angle_rad, \
     centre_e_t, centre_impact_angle_rad, centre_rebound_angle_rad, impulse_ratio}, \
     comparison: {eps_n_series, eps_n_pade, eps_t_coulomb, mindlin_stiffness_kg_per_s2, \

@@ -50,6 +50,7 @@ impl Oblique {
         let psi = (self.psi(angles_rad.low), self.psi(angles_rad.high));
         let kappa = (self.kappa() * (-REACH).exp(), self.kappa() * REACH.exp());
         let plane = CollisionPlane::oblique(*self, kappa, psi)?;
+        plane.require_smooth()?;
         let x = plane.point(self.kappa(), psi.0).x;
         let network = trace(&plane.family(), &plane.window(), &TraceOptions::default())
             .map_err(|error| AtlasError::of(&plane, error))?;

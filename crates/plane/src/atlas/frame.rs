@@ -71,7 +71,10 @@ impl Frame {
     /// # Errors
     /// [`InvalidValue`]: no collision has these values.
     pub fn plane(&self) -> Result<CollisionPlane, InvalidValue> {
-        let Self { kappa, psi, damping, .. } = *self;
+        let Self { kappa, psi, damping, ratio, .. } = *self;
+        let mu = ratio.map_or(1.0, |ratio| ratio.reduction.mu);
+        let expected = "a number above 0: without friction eps_t is 1 everywhere";
+        InvalidValue::check("mu", mu, expected, mu > 0.0)?;
         CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)?
             .with_law(self.law, self.tangential_damping)
     }

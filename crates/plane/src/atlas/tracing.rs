@@ -88,6 +88,7 @@ fn divide_watched(
 /// which no corner can be computed.
 pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Result<(), AtlasError> {
     plane.sheet().require_wide(plane.names())?;
+    plane.require_smooth()?;
     let ToleranceRange { finest, coarsest, .. } = plane.sheet().tolerances();
     if !(finest..=coarsest).contains(&tolerance) {
         return Err(AtlasError::Tolerance { tolerance, finest, coarsest });

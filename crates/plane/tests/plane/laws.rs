@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use stickslip_model::spheres::{BodyPair, Material, Surface};
 use stickslip_model::{Damping, End, Law, Normal, presets};
-use stickslip_plane::atlas::{BoundaryKind, CollisionAtlas, Frame};
-use stickslip_plane::{CollisionPlane, Range};
+use stickslip_plane::atlas::{self, BoundaryKind, CollisionAtlas, Frame};
+use stickslip_plane::{CollisionPlane, Range, progress};
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};
 
@@ -236,4 +236,21 @@ fn a_contact_that_creeps_is_computed() {
     let plane = plane.with_law(presets::find("gran/hertz/history").unwrap().law, 1.0).unwrap();
     let run = plane.family().free_run(&plane.point(1.5, 0.7)).unwrap();
     assert!(run.label.len() > 1 && !run.margins.is_empty(), "{run:?}");
+}
+
+/// A hysteretic force is traced where its kink is no graze, and refused elsewhere.
+#[test]
+fn hysteretic_forces_are_traced_or_refused() {
+    let psi = Range { low: 0.3, high: 1.2 };
+    for (normal, kappa) in [(Normal::Linear, (2.0, 2.5)), (Normal::Hertz, (0.8, 1.2))] {
+        let law = Law { normal, ..presets::find("walton-braun").unwrap().law };
+        let frame = |(low, high)| Frame { law, ..Frame::new(Range { low, high }, psi, 0.4) };
+        let tolerance = frame(kappa).tolerances().usual;
+        let atlas = atlas::trace(frame(kappa), tolerance, progress::SILENT).unwrap();
+        assert!(atlas.report.agrees && atlas.regions.regions().len() > 1, "{normal:?}");
+        for kappa in [(1.2, 1.6), (1.3, 5.0), (0.5, 1.7)] {
+            let error = atlas::trace(frame(kappa), tolerance, progress::SILENT).unwrap_err();
+            assert!(error.to_string().contains("which is not traced"), "{error}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The settings of a fit.
 
+use stickslip_model::spheres::Surface;
 use stickslip_model::{Damping, InvalidValue, Law};
 use stickslip_plane::Range;
 
@@ -74,6 +75,11 @@ impl FitSettings {
         }
         let accepted = (0.5..=0.9999).contains(&self.level);
         InvalidValue::check("level", self.level, "0.5 to 0.9999", accepted)?;
+        let Surface { friction, tangential_stiffness_kg_per_s2, .. } = self.bodies.pair.surface;
+        let above = "a finite number above 0";
+        InvalidValue::check("mu", friction, above, friction > 0.0)?;
+        let ok = tangential_stiffness_kg_per_s2 > 0.0 || !self.law().remembers();
+        InvalidValue::check("kappa", tangential_stiffness_kg_per_s2, above, ok)?;
         self.valid_free()?;
         self.valid_damping()?;
         let stages = [(true, self.free.contains(&Free::Damping).into())];

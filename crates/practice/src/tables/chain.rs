@@ -86,7 +86,7 @@ impl Chain {
     /// collision.
     pub fn itinerary_at(&self, place: [f64; 2], collision: &mut Collision) -> Option<String> {
         let contact = self.plane.contact_at(place).ok()?;
-        Engine::Exact.collide_into(contact, collision).ok()?;
+        Engine::Auto.collide_into(contact, collision).ok()?;
         Some(collision.itinerary())
     }
 }

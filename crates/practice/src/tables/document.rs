@@ -54,15 +54,20 @@ impl TryFrom<TableDocument> for Table {
         if schema != SCHEMA {
             return Err(InvalidValue::new("schema", &*schema, format!("{SCHEMA:?}")).into());
         }
-        let damping = match window {
-            TableWindow::Scaled { damping, .. } => damping,
-            TableWindow::Velocities { pair, .. } => pair.surface.damping_time_s,
+        let (damping, tangential_damping) = match window {
+            TableWindow::Scaled { damping, tangential_damping, .. } => {
+                (damping, tangential_damping)
+            }
+            TableWindow::Velocities { pair, .. } => {
+                (pair.surface.damping_time_s, pair.tangential_damping_ratio)
+            }
         };
         let eps_n = constant_eps_n.unwrap_or(1.0);
         let sides @ [x, y] = window.sides();
         let [x_name, y_name] = window.names();
         for (name, value, ok) in [
             ("damping", damping, damping >= 0.0),
+            ("tangential_damping", tangential_damping, tangential_damping >= 0.0),
             ("constant_eps_n", eps_n, eps_n > 0.0 && eps_n <= 1.0 + 1e-12),
             ("bound", bound, bound > 0.0),
             (x_name, x.low, x.low > 0.0 && x.low < x.high),

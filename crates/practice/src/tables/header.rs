@@ -2,8 +2,8 @@
 
 use std::fmt::{Display, Write};
 
-use stickslip_model::InvalidValue;
 use stickslip_model::spheres::Surface;
+use stickslip_model::{InvalidValue, Law};
 use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{ACROSS, ALONG};
@@ -58,6 +58,18 @@ const VELOCITIES: &str = " * Both arguments are velocities of the surfaces at th
  *   tangential stiffness      @STIFFNESS@ kg/s^2
  *   coefficient of friction   @FRICTION@
  *   tangential inertia        @ALPHA@ (2/7 for homogeneous spheres)";
+
+/// As that, for another contact law than the paper's.
+const OTHER_LAW: &str = " * Both arguments are velocities of the surfaces at the contact before the
+ * impact, in m/s: the normal velocity g_n > 0 and the tangential velocity g_t > 0, for two bodies with,
+ * in the SI units of the contact law,
+ *
+ *   effective mass                     @MASS@
+ *   normal force / x or x^(3/2)        @ELASTIC@ at the overlap x
+ *   damping / that                     @TIME@
+ *   constant of tangential stiffness   @STIFFNESS@
+ *   coefficient of friction            @FRICTION@
+ *   tangential inertia                 @ALPHA@ (2/7 for homogeneous spheres)";
 
 /// Checks that `prefix` can begin names in C.
 ///
@@ -148,7 +160,7 @@ impl Table {
     fn c_explanation(&self) -> String {
         let TableWindow::Velocities { pair, .. } = self.window else { return SCALED.to_owned() };
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = pair.surface;
-        let mut text = VELOCITIES.to_owned();
+        let mut text = if pair.law == Law::PAPER { VELOCITIES } else { OTHER_LAW }.to_owned();
         for (name, value) in [
             ("@MASS@", pair.effective_mass_kg),
             ("@ELASTIC@", pair.elastic_constant),
@@ -170,10 +182,18 @@ impl Table {
             }
             TableWindow::Velocities { .. } => " in m/s".to_owned(),
         };
+        let (law, tangential_damping) = match self.window {
+            TableWindow::Scaled { law, tangential_damping, .. } => (law, tangential_damping),
+            TableWindow::Velocities { pair, .. } => (pair.law, pair.tangential_damping()),
+        };
+        let source = if law == Law::PAPER {
+            "(Schwager, Becker and Poeschel, Eur. Phys. J. E\n * 27, 107, 2008)".to_owned()
+        } else {
+            format!("with {law:?}\n * and the tangential damping {tangential_damping:?},")
+        };
         let TableVerification { points, largest_error, .. } = self.verification;
         format!(
-            "The restitution of two frictional spheres (Schwager, Becker and Poeschel, Eur. Phys. J. \
-             E\n * 27, 107, 2008) for {x_name} from {:?} to {:?} and {y_name} from {:?} to {:?}{rest}. \
+            "The restitution of two frictional spheres {source} for {x_name} from {:?} to {:?} and {y_name} from {:?} to {:?}{rest}. \
              Errors are below\n * {:?}; at {points} points that of eps_t was at most \
              {largest_error:.2e}. Written by stickslip.",
             x.low, x.high, y.low, y.high, self.bound,

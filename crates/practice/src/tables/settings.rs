@@ -31,10 +31,16 @@ pub enum TableWindow {
         psi: Range,
         /// Scaled damping.
         damping: f64,
+        /// The contact law.
+        #[serde(default, skip_serializing_if = "is_paper")]
+        law: Law,
+        /// Tangential damping b = (γ_t/γ_n)/α.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        tangential_damping: f64,
     },
     /// The velocities of the surfaces of two bodies.
     Velocities {
-        /// The bodies, which obey the paper's law.
+        /// The bodies.
         pair: BodyPair,
         /// Normal velocity g_n in m/s.
         normal_m_per_s: Range,
@@ -62,13 +68,29 @@ impl TableWindow {
         }
     }
 
+    /// Whether the collisions of the window are integrated.
+    fn is_integrated(&self) -> bool {
+        let (law, damped, tangential_damping) = match *self {
+            Self::Scaled { law, damping, tangential_damping, .. } => {
+                (law, damping, tangential_damping)
+            }
+            Self::Velocities { pair, .. } => {
+                (pair.law, pair.surface.damping_time_s, pair.tangential_damping_ratio)
+            }
+        };
+        !law.acts_as_paper(damped, tangential_damping)
+    }
+
     /// The collisions of the window.
     ///
     /// # Errors
     /// [`InvalidValue`]: a value that no collision can have.
     pub fn plane(&self) -> Result<CollisionPlane, InvalidValue> {
         match *self {
-            Self::Scaled { kappa, psi, damping } => Frame::new(kappa, psi, damping).plane(),
+            Self::Scaled { kappa, psi, damping, law, tangential_damping } => {
+                let frame = Frame::new(kappa, psi, damping);
+                Frame { law, tangential_damping, ..frame }.plane()
+            }
             Self::Velocities { pair, .. } => CollisionPlane::velocities(pair, self.sides()),
         }
     }
@@ -79,7 +101,8 @@ impl Default for TableSettings {
     fn default() -> Self {
         let kappa = Range { low: 0.5, high: 100.0 };
         let psi = Range { low: 0.01, high: 3.0 };
-        let window = TableWindow::Scaled { kappa, psi, damping: 0.0 };
+        let (damping, tangential_damping, law) = (0.0, 0.0, Law::PAPER);
+        let window = TableWindow::Scaled { kappa, psi, damping, law, tangential_damping };
         Self { window, bound: 1e-8, regions: false }
     }
 }
@@ -87,6 +110,8 @@ impl Default for TableSettings {
 impl TableSettings {
     /// The finest bound.
     pub const FINEST: f64 = 1e-12;
+    /// The finest bound where collisions are integrated.
+    pub const FINEST_INTEGRATED: f64 = 1e-9;
     /// The coarsest bound.
     pub const COARSEST: f64 = 1e-3;
     /// Most strips, for which up to 850 MB are needed.
@@ -95,9 +120,11 @@ impl TableSettings {
     /// Checks all settings but those that an atlas checks.
     ///
     /// # Errors
-    /// [`TableError::Settings`] names the first that is out of its range; [`TableError::Law`].
+    /// [`TableError::Settings`] names the first that is out of its range.
     pub fn validate(&self) -> Result<(), TableError> {
-        let (finest, coarsest) = (Self::FINEST, Self::COARSEST);
+        let finest =
+            if self.window.is_integrated() { Self::FINEST_INTEGRATED } else { Self::FINEST };
+        let coarsest = Self::COARSEST;
         if !(finest..=coarsest).contains(&self.bound) {
             let expected = format!("{finest:e} to {coarsest:e}");
             return Err(InvalidValue::new("bound", self.bound, expected).into());
@@ -108,13 +135,16 @@ impl TableSettings {
             let expected = "an ascending interval above 0";
             InvalidValue::check(name, [low, high], expected, accepted)?;
         }
-        match self.window {
-            TableWindow::Velocities { pair, .. }
-                if pair.law != Law::PAPER || pair.tangential_damping_ratio != 0.0 =>
-            {
-                Err(TableError::Law)
-            }
-            _ => Ok(()),
-        }
+        Ok(())
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_paper(law: &Law) -> bool {
+    *law == Law::PAPER
 }

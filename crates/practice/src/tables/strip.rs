@@ -249,7 +249,7 @@ fn tails(terms: &[[f64; ACROSS]; ALONG]) -> [f64; 2] {
     [along, terms.iter().map(|row| row[ACROSS - 1].abs()).sum()]
 }
 
-/// ε_t and ε_n at a place of a plane, by the exact engine, computed in `collision`.
+/// ε_t and ε_n at a place of a plane, by the best engine, computed in `collision`.
 ///
 /// # Errors
 /// [`TableError::Engine`]: the collision cannot be computed.
@@ -259,7 +259,7 @@ pub fn restitution(
     collision: &mut Collision,
 ) -> Result<[f64; 2], TableError> {
     let contact = plane.contact_at(place)?;
-    let computed = Engine::Exact.collide_into(contact, collision);
+    let computed = Engine::Auto.collide_into(contact, collision);
     computed.map_err(|source| TableError::Engine {
         place: TablePlace::of(plane, place),
         source: Box::new(source),

@@ -75,7 +75,7 @@ impl TimeStepSettings {
             return Err(invalid("phases", &given, format!("a product of at most {most}")));
         }
         let Reduction { mu, alpha } = self.reduction;
-        let accepted = quantity::FRICTION.check(mu).is_ok();
+        let accepted = mu > 0.0 && quantity::FRICTION.check(mu).is_ok();
         InvalidValue::check("mu", mu, "a finite number above 0", accepted)?;
         let accepted = quantity::INERTIA.check(alpha).is_ok();
         InvalidValue::check("alpha", alpha, "a number above 0, at most 1", accepted)

@@ -65,7 +65,8 @@ pub fn step(
     let longest = LONGEST * f64::max(duration, undamped_contact_time(contact.law()));
     let most = (longest / dt + 10.0).min(MOST_STEPS);
     let mut rule = ForceRule::new(contact, dt, scheme);
-    let mut state = State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0 };
+    let mut state =
+        State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0, greatest: 0.0 };
     let mut steps = 0;
     let mut stiffness: f64 = 0.0;
     loop {
@@ -98,6 +99,8 @@ struct State {
     history: f64,
     /// √x one step before; 0 before the contact.
     root: f64,
+    /// Greatest overlap so far.
+    greatest: f64,
 }
 
 /// What decides on forces.
@@ -118,7 +121,7 @@ impl ForceRule {
         let law = contact.law();
         Self {
             law,
-            limited: law.limit_damping || law.end == End::Force,
+            limited: law.limit_damping || law.end == End::Force || law.damping.is_hysteretic(),
             kappa: contact.kappa(),
             damping: contact.damping(),
             tangential_damping: contact.tangential_damping(),
@@ -133,13 +136,15 @@ impl ForceRule {
     /// falls in free flight, in which a force would attract until the end.
     fn advance(&mut self, state: &mut State) -> Option<f64> {
         let Self { law, dt, .. } = *self;
-        let (x, root) = (state.x, state.x.sqrt());
+        let root = state.x.sqrt();
+        state.greatest = state.greatest.max(state.x);
+        let (pushed, factor) = self.pushed(state);
         let (elastic, slope) = match law.normal {
-            Normal::Linear => (x, 1.0),
-            Normal::Hertz => (x * root, 1.5 * root),
+            Normal::Linear => (factor * pushed, factor),
+            Normal::Hertz => (factor * pushed * pushed.sqrt(), 1.5 * factor * pushed.sqrt()),
         };
         let eta = match law.damping {
-            Damping::None => 0.0,
+            Damping::None | Damping::Hysteretic | Damping::Hardening => 0.0,
             Damping::Linear => self.damping,
             Damping::Viscoelastic => self.damping * root,
             Damping::Tsuji => self.damping * root.sqrt(),
@@ -158,6 +163,20 @@ impl ForceRule {
         state.w -= dt * tangential;
         let number = |k: f64, damping: f64| 0.25 * dt * (k * dt + 2.0 * damping);
         Some(f64::max(number(slope, eta), number(k, dashpot)))
+    }
+
+    /// The part of the overlap that pushes, and the factor of the stiffness.
+    fn pushed(&self, state: &State) -> (f64, f64) {
+        let State { x, greatest, .. } = *state;
+        if !self.law.damping.is_hysteretic() || x == greatest {
+            return (x, 1.0);
+        }
+        let factor = 1.0 + self.damping;
+        let power = match self.law.normal {
+            Normal::Linear => -1.0,
+            Normal::Hertz => -2.0 / 3.0,
+        };
+        (f64::max(0.0, x - greatest * (1.0 - factor.powf(power))), factor)
     }
 
     /// The tangential force against the motion, with the history that it leaves.

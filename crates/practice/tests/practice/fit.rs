@@ -121,6 +121,18 @@ fn spins_and_velocities_together() {
     assert!(spin.value < 60.0, "{best:?}");
 }
 
+/// The spins alone, of up to 613 rad/s: the spring is that of the velocities, to within the
+/// scatter.
+#[test]
+fn spins_alone_have_one_best_spring() {
+    let (bodies, _) = oblique::aluminium_oxide(Law::PAPER);
+    let found = fit::run(&FitSettings::new(bodies, oblique::spins()), SILENT).unwrap();
+    let best = &found.minima[0];
+    assert!((best.values.kappa - 3.279).abs() < 1e-3, "{best:?}");
+    assert!((best.values.mu - 0.0943).abs() < 1e-4, "{best:?}");
+    assert!(best.root_mean_squares[0].value < 21.3, "{best:?}");
+}
+
 fn known() -> (FittedBodies, Values) {
     let values = Values { kappa: 6.0, mu: 0.2, tangential_damping: 0.0, damping: 0.0 };
     (FittedBodies::scaled(Law::PAPER, 2.0 / 7.0, &values).unwrap(), values)

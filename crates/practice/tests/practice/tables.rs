@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use fastrand::Rng;
-use stickslip_model::{Contact, Engine, InvalidValue, exact};
+use stickslip_model::{Contact, Engine, InvalidValue, Law, exact};
 use stickslip_plane::{Range, progress};
 use stickslip_practice::tables::{self, Table, TableError, TableSettings, TableWindow};
 use stickslip_practice::tables::{Keys, TableDocument};
@@ -18,7 +18,7 @@ fn small(bound: f64) -> TableSettings {
 
 fn scaled(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> TableWindow {
     let [kappa, psi] = [kappa, psi].map(|(low, high)| Range { low, high });
-    TableWindow::Scaled { kappa, psi, damping }
+    TableWindow::Scaled { kappa, psi, damping, law: Law::PAPER, tangential_damping: 0.0 }
 }
 
 fn made(settings: &TableSettings) -> Table {

@@ -6,10 +6,10 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use stickslip_model::spheres::{Body, BodyPair, Material, Sphere, Surface, Wall};
-use stickslip_model::{Engine, Law, presets};
+use stickslip_model::{Engine, Normal, presets};
 use stickslip_plane::{Range, progress};
 use stickslip_practice::tables::TableDocument;
-use stickslip_practice::tables::{self, Table, TableError, TableSettings, TableWindow};
+use stickslip_practice::tables::{self, Table, TableSettings, TableWindow};
 
 use crate::c_program;
 
@@ -54,7 +54,7 @@ fn made(settings: &TableSettings) -> Table {
 fn exact(table: &Table, normal: f64, tangential: f64) -> (f64, f64, String) {
     let TableWindow::Velocities { pair, .. } = table.window else { panic!("another window") };
     let contact = pair.impact(normal, tangential).expect("an impact").contact;
-    let (collision, _) = Engine::Exact.collide(contact).expect("a collision");
+    let (collision, _) = Engine::Auto.collide(contact).expect("a collision");
     (collision.eps_t(), collision.eps_n, collision.itinerary())
 }
 
@@ -242,14 +242,37 @@ fn what_cannot_be_is_refused_with_numbers() {
     // A damping that is too weak for the integrator, which verifies the boundaries.
     let weak = refused(with_damping(1e-18, 2e8), (1.0, 8.0), (0.3, 12.0));
     assert!(weak.to_string().contains("damping"), "{weak}");
+    // A bound that an integrator does not reach.
     let history = presets::find("gran/hertz/history").unwrap().law;
-    let other: [fn(BodyPair, Law) -> BodyPair; 2] = [
-        |pair, law| BodyPair { law, ..pair },
-        |pair, _| BodyPair { tangential_damping_ratio: 0.5, ..pair },
-    ];
-    for change in other {
-        let error = refused(change(spheres(), history), (1.0, 8.0), (0.3, 12.0));
-        assert_eq!(error, TableError::Law);
+    let fine = settings(BodyPair { law: history, ..spheres() }, (1.0, 2.0), (0.3, 1.0), 1e-10);
+    let fine = tables::run(&fine, progress::SILENT).unwrap_err().to_string();
+    assert!(fine.contains("expected 1e-9 to 1e-3"), "{fine}");
+}
+
+/// Tables of laws of particle codes, one of whose force is hysteretic, and of no friction.
+#[test]
+fn tables_of_other_laws_are_within_their_bounds() {
+    for (name, friction, damping, tangential_damping_ratio) in [
+        ("granular/hertz/tsuji/mindlin/force", 0.4, 2e-6, 0.2),
+        ("walton-braun", 0.4, 0.8, 0.0),
+        ("walton-braun", 0.0, 0.8, 0.0),
+    ] {
+        let preset = presets::find(name).unwrap();
+        let hertz = preset.law.normal == Normal::Hertz;
+        let surface = Surface {
+            friction,
+            tangential_stiffness_kg_per_s2: if hertz { 4e9 } else { 3e7 },
+            damping_time_s: damping,
+        };
+        let elastic_constant = if hertz { spheres().elastic_constant } else { 5e6 };
+        let law = preset.law;
+        let pair =
+            BodyPair { law, surface, elastic_constant, tangential_damping_ratio, ..spheres() };
+        let table = made(&settings(pair, (1.0, 1.3), (0.9, 1.2), 1e-4));
+        let [eps_t, eps_n] = largest_errors(&table, 500);
+        assert!(eps_t < 1e-4 && eps_n < 1e-4, "{name} {eps_t:e} {eps_n:e}");
+        let any = table.eps_t(1.1, 1.0);
+        assert!((any == 1.0) == (friction == 0.0), "{name} {any}");
     }
 }
 

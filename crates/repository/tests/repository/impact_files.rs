@@ -79,8 +79,8 @@ fn range(name: &str) -> &'static str {
         Some("young_modulus_pa") => "above 0, in Pa",
         Some("poisson_ratio") => "above -1, at most 0.5, without unit",
         Some("density_kg_per_m3") => "above 0, in kg/m³",
-        Some("friction") => "above 0, without unit",
-        Some("tangential_stiffness_kg_per_s2") => "above 0, in kg/s²",
+        Some("friction") => "0 or above, without unit",
+        Some("tangential_stiffness_kg_per_s2") => "0 or above, in kg/s²",
         Some("damping_time_s") => "0 or above, in s",
         Some("mass_kg") => "above 0, in kg",
         Some("moment_of_inertia_kg_m2") => "above 0, in kg m²",
@@ -139,7 +139,6 @@ fn numbers_out_of_range_missing_or_of_another_type() {
     }
     for (path, name) in [
         ("/spheres/0/radius_m", "spheres[0].radius_m = 0.0 "),
-        ("/surface/friction", "surface.friction = 0.0 "),
         ("/spheres/0/moment_of_inertia_kg_m2", "spheres[0].moment_of_inertia_kg_m2 = 0.0 "),
     ] {
         let zero = with(&file, path, Some(json!(0)));

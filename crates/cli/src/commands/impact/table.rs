@@ -111,7 +111,7 @@ fn energy(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let [slip, stick] = if impact.collision.contact.obeys_paper() {
         ["taken by sliding [J]", "left in the spring [J]"]
     } else {
-        ["lost in slip [J]", "lost in stick [J]"]
+        ["taken by friction [J]", "lost to the spring in stick [J]"]
     };
     pairs(
         out,
@@ -121,6 +121,7 @@ fn energy(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
             ("kinetic energy after [J]", number(energy.kinetic_after_j)),
             (slip, number(energy.sliding_j)),
             ("taken by damping [J]", number(energy.damping_j)),
+            ("taken by the tangential dashpot [J]", number(energy.tangential_damping_j)),
             (stick, number(energy.spring_left_j)),
             ("left in the compression [J]", number(energy.compression_left_j)),
             ("unbalanced [J]", number(energy.unbalanced_j())),

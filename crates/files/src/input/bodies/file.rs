@@ -123,6 +123,8 @@ pub struct SurfaceFields {
     damping_time_s: Option<Value>,
     damping_ratio: Option<Value>,
     critical_damping_ratio: Option<Value>,
+    unloading_stiffness_ratio: Option<Value>,
+    hardening_per_m: Option<Value>,
     e_n: Option<Value>,
     e_n_at_m_per_s: Option<Value>,
     tangential_damping_ratio: Option<Value>,
@@ -317,6 +319,11 @@ impl SurfaceFields {
                 &quantity::CRITICAL_DAMPING_RATIO,
                 &self.critical_damping_ratio,
             )?,
+            unloading_stiffness_ratio: given(
+                &quantity::UNLOADING_RATIO,
+                &self.unloading_stiffness_ratio,
+            )?,
+            hardening_per_m: given(&quantity::HARDENING, &self.hardening_per_m)?,
             e_n: given(&quantity::NORMAL_RESTITUTION, &self.e_n)?,
             e_n_at_m_per_s: given(&quantity::RESTITUTION_VELOCITY, &self.e_n_at_m_per_s)?,
             tangential_damping_ratio: given(

@@ -34,7 +34,7 @@ pub trait Followed<const N: usize>: Copy {
     fn begins(event: &SwitchEvent<Self::Mode, N>) -> Begins;
 
     /// How long the overlap goes on when the force has ended in the state `y`.
-    fn flight(&self, y: &State<N>) -> f64;
+    fn flight(&self, mode: Self::Mode, y: &State<N>) -> f64;
 }
 
 /// What begins with an event.
@@ -87,7 +87,7 @@ impl Followed<{ components::STATE }> for Regularized {
         if event.guard == END { Begins::End } else { Begins::Phase }
     }
 
-    fn flight(&self, _y: &State<{ components::STATE }>) -> f64 {
+    fn flight(&self, _phase: Phase, _y: &State<{ components::STATE }>) -> f64 {
         0.0
     }
 }
@@ -111,9 +111,9 @@ impl Followed<{ general::STATE }> for GeneralContact {
     fn snapshot(&self, mode: Mode, y: &State<{ general::STATE }>) -> Snapshot {
         Snapshot {
             time: y[general::T],
-            compression: self.overlap(y),
+            compression: self.overlap(mode, y),
             normal_velocity: self.compression_rate(y),
-            normal_force: self.normal_force(y),
+            normal_force: self.normal_force(mode, y),
             spring: self.spring(mode, y),
             tangential_force: -self.tangential_force(mode, y),
             velocity: self.velocity(y),
@@ -134,7 +134,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
         }
     }
 
-    fn flight(&self, y: &State<{ general::STATE }>) -> f64 {
-        Self::flight(self, y)
+    fn flight(&self, mode: Mode, y: &State<{ general::STATE }>) -> f64 {
+        Self::flight(self, mode, y)
     }
 }

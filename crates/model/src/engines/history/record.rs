@@ -204,7 +204,7 @@ impl<S: Followed<N>, const N: usize> Observer<S::Mode, N> for Record<S, N> {
         ended.end = event.before;
         ended.steps.end = steps;
         if begins == Begins::End {
-            self.flight = self.system.flight(&event.before);
+            self.flight = self.system.flight(event.from, &event.before);
             return;
         }
         let since = ended.since + event.before[S::CLOCK] - event.after[S::CLOCK];

@@ -132,9 +132,9 @@ impl Account<'_> {
         self.leave(y);
         let Self { system, collision, sliding, lasting, .. } = self;
         let contact = collision.contact;
-        let (overlap, rate) = (system.overlap(y), system.compression_rate(y));
+        let (pushed, rate) = (system.compression(y), system.compression_rate(y));
         let Law { normal, end, .. } = contact.law();
-        let flight = system.flight(y);
+        let flight = system.flight(self.phase, y);
         collision.contact_time = self.elapsed + flight;
         let mut left = lasting + flight;
         for switch in collision.switches.iter_mut().rev() {
@@ -145,20 +145,22 @@ impl Account<'_> {
         let [tangential_initial, tangential_final] =
             [contact.psi(), collision.final_velocity].map(|w| 0.5 * w * w);
         let compression = match normal {
-            Normal::Linear => 0.5 * overlap * overlap,
-            Normal::Hertz => 0.4 * overlap.powf(2.5),
+            Normal::Linear => 0.5 * pushed * pushed,
+            Normal::Hertz => 0.4 * pushed.powf(2.5),
         };
         // Where the force is limited, damping takes the rest of the compression.
         let [taken, compression_left] = match end {
             End::Force => [0.0, compression],
             End::Overlap => [compression, 0.0],
         };
+        let tangential_damping = system.taken_by_dashpot(y);
         let normal_final = 0.5 * rate * rate;
         collision.energy = EnergyLedger {
             tangential_initial,
             tangential_final,
             sliding,
-            spring_left: tangential_initial - tangential_final - sliding,
+            tangential_damping,
+            spring_left: tangential_initial - tangential_final - sliding - tangential_damping,
             normal_initial: 0.5,
             normal_final,
             damping: y[DAMPING] + taken,

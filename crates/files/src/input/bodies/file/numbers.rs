@@ -54,7 +54,7 @@ const WALL_MOTION: [Vector<WallMotionFields>; 3] = [
     ("normal", "without unit", |it| &mut it.normal),
     (VELOCITY.0, VELOCITY.1, |it| &mut it.velocity_m_per_s),
 ];
-const SURFACE: [Scalar<SurfaceFields>; 12] = [
+const SURFACE: [Scalar<SurfaceFields>; 14] = [
     (&quantity::FRICTION, |it| &mut it.friction),
     (&quantity::NORMAL_STIFFNESS, |it| &mut it.normal_stiffness_kg_per_s2),
     (&quantity::HERTZ_STIFFNESS, |it| &mut it.hertz_stiffness_kg_per_s2_m0_5),
@@ -64,6 +64,8 @@ const SURFACE: [Scalar<SurfaceFields>; 12] = [
     (&quantity::DAMPING_TIME, |it| &mut it.damping_time_s),
     (&quantity::DAMPING_RATIO, |it| &mut it.damping_ratio),
     (&quantity::CRITICAL_DAMPING_RATIO, |it| &mut it.critical_damping_ratio),
+    (&quantity::UNLOADING_RATIO, |it| &mut it.unloading_stiffness_ratio),
+    (&quantity::HARDENING, |it| &mut it.hardening_per_m),
     (&quantity::NORMAL_RESTITUTION, |it| &mut it.e_n),
     (&quantity::RESTITUTION_VELOCITY, |it| &mut it.e_n_at_m_per_s),
     (&quantity::TANGENTIAL_DAMPING_RATIO, |it| &mut it.tangential_damping_ratio),
