@@ -252,7 +252,7 @@ fn number(label: &Itinerary) -> String {
         Itinerary::Fires(guards) => guards.len().to_string(),
         Itinerary::Begins(guards) => format!("{}+", guards.len()),
         Itinerary::Accumulates => "∞".to_owned(),
-        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+        Itinerary::Unfinished | Itinerary::Fails | Itinerary::NoStart(_) => "–".to_owned(),
     }
 }
 

@@ -139,7 +139,10 @@ class HybridFamily:
     t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if
     they depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that
     returns the state, the mode, or (mode, state). If it is recorded and chooses between two modes,
-    the choice is an event "start", whose condition is a boundary.
+    the choice is an event "start", whose condition is a boundary. requires: if there is no start at
+    some parameters, a function requires(t, y, p, q, *args) of t_span[0] and y0 that is negative
+    there, or several, which are decided in their order. Where one is negative, the itinerary is
+    "no start", and neither `start` nor the run need exist; its zero is a boundary.
 
     name, axes: what was traced and the names of the two parameters, for files and pictures. rtol,
     atol, max_step, first_step, guard_scale: as in `solve`; margins are as accurate as the runs. The
@@ -174,6 +177,7 @@ class HybridFamily:
         mode: str | Mode | None = None,
         *,
         start: Function | None = None,
+        requires: Function | Iterable[Function] = (),
         args: tuple[Any, ...] = (),
         name: str = "hybrid systems",
         axes: tuple[str, str] = ("x", "y"),
@@ -206,6 +210,8 @@ class HybridFamily:
             _check_parameters(start, "start")
             callee = start if isinstance(start, Compiled) else table.transition(start, "start")
             first = (None, ("start", _callee(callee)), not isinstance(start, Compiled), None)
+        conditions = _functions(requires)
+        required = [(what, _callee(function)) for what, function in conditions]
         for one in system.modes:
             _check_parameters(one.right_hand_side, f"the right-hand side of mode {one.name!r}")
             for source in one._sources:
@@ -234,7 +240,7 @@ class HybridFamily:
         self._native = _native.HybridFamily(
             table.system(places),
             table.args,
-            ((first_mode, begin, state, []), first),
+            ((first_mode, begin, state, []), first, required),
             end,
             settings,
             (self.name, list(self.axes), names),
@@ -251,7 +257,12 @@ class HybridFamily:
                 if counted:
                     raise CannotRecord("guards of several modes are counted until the run ends")
                 self._recorded = Recorded(
-                    table, (first_mode, begin), state, ("p", "q"), beginning=start
+                    table,
+                    (first_mode, begin),
+                    state,
+                    ("p", "q"),
+                    beginning=start,
+                    required=[function for _, function in conditions],
                 )
                 del settings["guard_scale"]
                 self._settings = settings
@@ -582,6 +593,16 @@ def _places(system: HybridSystem) -> tuple[list[list[int]], list[str]]:
     rows = zip(system.modes, modes, strict=True)
     pairs = [(mode.name, name) for mode, names in rows for name in names]
     return places, [name if every.count(name) == 1 else f"{mode}: {name}" for mode, name in pairs]
+
+
+def _functions(requires: Function | Iterable[Function]) -> list[tuple[str, Function]]:
+    """The conditions of a start, with what messages call them."""
+    given = [requires] if callable(requires) or isinstance(requires, Compiled) else requires
+    functions = [(f"requires {number}", function) for number, function in enumerate(given, 1)]
+    for what, function in functions:
+        _check_function(function, what)
+        _check_parameters(function, what)
+    return functions
 
 
 def _check_parameters(function: Function | None, what: str) -> None:

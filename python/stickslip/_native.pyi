@@ -76,7 +76,7 @@ class Tape:
     def system(
         self,
         parameters: list[str],
-        start: tuple[int, float, list[int], tuple[int, int] | None],
+        start: tuple[int, float, list[int], tuple[int, int] | None, list[int]],
         modes: list[tuple[str, list[int], list[dict[str, Any]]]],
         held: list[str],
         surfaces: list[tuple[str, int]],
@@ -257,7 +257,7 @@ class HybridFamily:
         cls,
         system: tuple[list[Any], list[Any], tuple[Any, Any]],
         args: tuple[Any, ...],
-        start: tuple[tuple[int, float, _Floats, list[int]], Any],
+        start: tuple[tuple[int, float, _Floats, list[int]], Any, list[Any]],
         end: float,
         settings: dict[str, Any],
         description: tuple[str, list[str], list[str]],

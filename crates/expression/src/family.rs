@@ -57,16 +57,27 @@ impl DynamicProblem for Plane {
     type System = Runnable;
 
     fn at(&self, point: &Point) -> Option<DynamicSetting<Runnable>> {
-        let mut parameters = self.parameters.clone();
-        for (&axis, value) in self.axes.iter().zip([point.x, point.y]) {
-            parameters[axis] = value;
-        }
+        let parameters = self.parameters_at(point);
         // Where a start or a period is not a number, there is no run.
-        let system = self.compiled.with(&parameters).ok()?;
+        let system = self.compiled.where_it_may(&parameters).ok()?;
         let start = system.start();
         let (mode, s, state) = (start.mode, start.s, start.state.to_vec());
         let end = self.end.unwrap_or(system.end());
         (end > s).then_some(DynamicSetting { system, mode, s, state, end })
+    }
+
+    fn conditions(&self, point: &Point) -> Vec<f64> {
+        self.compiled.rooms(&self.parameters_at(point))
+    }
+}
+
+impl Plane {
+    fn parameters_at(&self, point: &Point) -> Vec<f64> {
+        let mut parameters = self.parameters.clone();
+        for (&axis, value) in self.axes.iter().zip([point.x, point.y]) {
+            parameters[axis] = value;
+        }
+        parameters
     }
 }
 
