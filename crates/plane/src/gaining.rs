@@ -27,8 +27,7 @@ pub struct Gaining {
     pub tolerance: f64,
     plane: CollisionPlane,
     family: CollisionFamily,
-    /// All regions in traced coordinates, with what speaks against them. Changes of the switches
-    /// divide the regions of |ε_t| further.
+    /// The regions in traced coordinates, with what speaks against them.
     pub atlas: Atlas<CollisionLabel, Margin>,
 }
 
@@ -46,13 +45,11 @@ pub struct GainingLine {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
-/// compares the regions with runs.
+/// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, and compares the regions with runs.
 ///
-/// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and
-/// history by displacement, it touches one of the switches. Within some 1e-6 of such a point
-/// changes stay unresolved, and the regions beside it are in doubt: [`Gaining::gains`] computes the
-/// collision there.
+/// The lines have a vertex where the switches change, and go on behind it with a kink. Regions are
+/// told apart by |ε_t| alone, so that an atlas of the switches has no part in them, and they none in
+/// it.
 ///
 /// ```
 /// use stickslip_model::{Contact, presets};
@@ -178,8 +175,12 @@ impl Names<CollisionLabel, Margin> for Gaining {
     }
 
     fn text(&self, label: &CollisionLabel) -> String {
-        let itinerary = itinerary(self.plane.first(), label);
-        if gains(label) { format!("{itinerary} with |eps_t| above 1") } else { itinerary }
+        let text = match label.last() {
+            _ if gains(label) => "|eps_t| above 1",
+            None => "|eps_t| up to 1",
+            Some(_) => return itinerary(self.plane.first(), label),
+        };
+        text.to_owned()
     }
 
     fn kind(&self, margin: &Margin) -> &'static str {
