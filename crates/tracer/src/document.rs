@@ -178,7 +178,9 @@ impl<Label: Clone + Ord, Margin: Clone> Document<Label, Margin> {
         }
         self.options.trace.validate()?;
         let Self { window, curves, vertices, options, unresolved, verification, .. } = self;
-        let plane = Subdivision::new(window, curves, vertices, options.tolerance)?;
+        let mut plane = Subdivision::new(window, curves, vertices, options.tolerance)?;
+        let known = |sample: &Point| self.regions.iter().find(|region| region.sample == *sample);
+        plane.label_rest(|sample| known(sample)?.label.clone());
         if plane.regions() != self.regions {
             return Err(DocumentError::Regions);
         }

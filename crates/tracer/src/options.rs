@@ -142,6 +142,10 @@ pub enum TraceError<E: std::error::Error + 'static> {
         /// The greatest number of curves, [`TraceOptions::max_curves`].
         most: usize,
     },
+    /// The watch of a search has cancelled it. A [`Surveyor`](crate::Surveyor) returns what was
+    /// found so far in the place of this.
+    #[error("the search was cancelled")]
+    Cancelled,
     /// A margin is not a number.
     #[error("a margin at ({}, {}) is not a number", point.x, point.y)]
     NotANumber {

@@ -11,7 +11,7 @@ use crate::tracing::margins::{Arranged, Lines};
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 
-impl<F: Family> Lines<'_, '_, F> {
+impl<F: Family> Lines<'_, F> {
     /// The greatest number of lines. Many are not seen by runs.
     pub(super) fn most(&self) -> usize {
         self.runs.options.max_curves.saturating_mul(2)

@@ -63,7 +63,7 @@ struct Seen<L> {
     sides: [L; 2],
 }
 
-impl<F: Family> Lines<'_, '_, F> {
+impl<F: Family> Lines<'_, F> {
     /// The curves that runs see of the parts, and their vertices.
     pub(super) fn seen(
         &mut self,
@@ -73,9 +73,6 @@ impl<F: Family> Lines<'_, '_, F> {
         let mut doubts = Vec::new();
         let mut all = Vec::new();
         for part in parts {
-            if self.watch.is_cancelled() {
-                break;
-            }
             let sides = self.sides(part, &mut doubts)?;
             if sides[0] != sides[1] {
                 let length = part.length(&self.all[part.line]);
