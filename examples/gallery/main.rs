@@ -242,7 +242,7 @@ fn kind(margin: &Margin) -> usize {
         Place::End => 0,
         Place::Minimum { .. } | Place::Maximum { .. } => 1,
         Place::Exit(_) => 2,
-        Place::Start { .. } | Place::Branch(_) => 3,
+        Place::Start { .. } | Place::Branch(_) | Place::Condition => 3,
     }
 }
 

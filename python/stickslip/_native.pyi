@@ -233,7 +233,7 @@ class Atlas:
         psi: tuple[float, float],
         ratio: tuple[tuple[float, float], float, float] | None,
         collisions: tuple[float, _Law],
-        tolerance: float | None,
+        accuracy: tuple[float | None, str],
         threads: int,
         progress: _Report | None = None,
     ) -> Atlas: ...
@@ -331,11 +331,12 @@ class FamilyAtlas:
     def picture(self) -> str: ...
     def locate(self, x: _Floats, y: _Floats) -> tuple[NDArray[np.int64], _Floats]: ...
 
+def atlas_options(effort: str) -> str: ...
 def gaining_lines(
     kappa: tuple[float, float],
     psi: tuple[float, float],
     collisions: tuple[float, _Law],
-    tolerance: float | None,
+    accuracy: tuple[float | None, str],
     threads: int,
     progress: _Report | None = None,
 ) -> tuple[str, str | None]: ...

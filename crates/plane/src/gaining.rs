@@ -3,7 +3,7 @@
 
 use stickslip_model::Contact;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Atlas, AtlasOptions, Curve, Names, Point, Surveyor};
+use stickslip_tracer::{Atlas, AtlasOptions, Curve, Effort, Names, Point, Surveyor};
 
 use crate::atlas::{
     AtlasError, BoundaryKind, Frame, itinerary, polyline, require_traceable, trace_options,
@@ -78,18 +78,26 @@ pub fn trace<'w>(
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
 ) -> Result<Gaining, AtlasError> {
-    trace_watched(frame, tolerance, watch.into())
+    trace_with(frame, tolerance, Effort::Default, watch.into())
 }
 
-/// [`trace`], compiled once, in this crate, as with atlases.
-fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaining, AtlasError> {
+/// As [`trace`], with another effort. It is compiled once, in this crate, as with atlases.
+///
+/// # Errors
+/// As [`trace`].
+pub fn trace_with(
+    frame: Frame,
+    tolerance: f64,
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Gaining, AtlasError> {
     let plane = frame.plane()?;
     require_traceable(&plane, tolerance)?;
-    let options = AtlasOptions {
+    let options = effort.applied(AtlasOptions {
         trace: trace_options(&plane, tolerance),
         tolerance: plane.sheet().resolution(tolerance),
         ..AtlasOptions::default()
-    };
+    });
     let surveyor = Surveyor { options, executor: InParallel, watch };
     let family = plane.gaining();
     let atlas =

@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 
 use crate::doubts::Doubts;
+use crate::effort::Effort;
 use crate::family::Family;
 use crate::names::{Names, Unnamed};
 use crate::options::TraceOptions;
@@ -29,12 +30,16 @@ pub struct AtlasOptions {
     /// The greatest number of rounds, at least 1. In each round the regions are verified, and the
     /// tracer looks again where runs have other labels.
     pub rounds: usize,
+    /// The effort that was made: it sets the numbers above by [`Effort::applied`]. Only a screen
+    /// leaves a window as it is in which something is in doubt.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Effort::is_default"))]
+    pub effort: Effort,
 }
 
 impl Default for AtlasOptions {
     fn default() -> Self {
         let (trace, verify) = (TraceOptions::default(), VerifyOptions::default());
-        Self { trace, tolerance: 1e-9, verify, rounds: 8 }
+        Self { trace, tolerance: 1e-9, verify, rounds: 8, effort: Effort::Default }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::regions::verify::report::Verification;
 use crate::tracing::network::{TraceStatistics, Unresolved};
 use crate::tracing::tracer::stage::Stage;
 use crate::tracing::tracer::state::State;
-use crate::window::Window;
+use crate::window::{Point, Window};
 
 /// The name of the layout, with its version.
 pub const SCHEMA: &str = "stickslip.family-atlas/1";

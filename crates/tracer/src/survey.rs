@@ -2,6 +2,7 @@
 
 use crate::atlas::{Atlas, AtlasOf, AtlasOptions};
 use crate::draft::{Draft, Own};
+use crate::effort::Effort;
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::{TraceError, TraceOptions};
@@ -179,7 +180,7 @@ impl<'w, E> Surveyor<'w, E> {
         };
         let first: Result<_, DraftError<D>> = traced(self.options.trace);
         let first = first?;
-        if first.0.agrees() {
+        if first.0.agrees() || self.options.effort == Effort::Screen {
             return Ok(first);
         }
         for trace in draft.other_options(&self.options.trace) {
@@ -243,7 +244,7 @@ impl<'w, E> Surveyor<'w, E> {
             None => self.unverified(draft, tracer.network(), round)?.0,
         };
         let mut surveyed = false;
-        if finished && !atlas.agrees() {
+        if finished && !atlas.agrees() && self.options.effort != Effort::Screen {
             match self.by_margins(draft, &tracer.window()) {
                 Ok((other, Some(lines))) if other.agrees() && !lines.have_cusps() => {
                     return Ok((other, Some(lines)));
