@@ -2,6 +2,7 @@
 
 mod align;
 mod start;
+mod values;
 
 use std::borrow::Cow;
 
@@ -20,7 +21,9 @@ use crate::system::System;
 
 /// A system whose runs depend on two of its parameters.
 ///
-/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`].
+/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`]. Where no run
+/// starts, a condition does not hold: one that the system [requires](System::required), or, counted
+/// behind those, that a start has a value, such as that what is under a square root is not negative.
 ///
 /// ```
 /// use stickslip_expression::{System, SystemFamily};
@@ -124,7 +127,9 @@ impl SystemFamily {
             }
         };
         // Sequences are those of rules alone.
-        let compiled = order.align(&system).compile_as_it_is()?;
+        let mut aligned = order.align(&system);
+        values::require_values(&mut aligned);
+        let compiled = aligned.compile_as_it_is()?;
         let rules = order.names;
         compiled.check(parameters)?;
         let count = parameters.len();

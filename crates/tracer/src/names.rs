@@ -138,7 +138,7 @@ impl Names<Itinerary, Margin> for RunNames {
             Itinerary::Begins(guards) => format!("{}+", guards.len()),
             Itinerary::Accumulates => "∞".to_owned(),
             Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
-            Itinerary::NoStart(_) => "∅".to_owned(),
+            Itinerary::NoStart(_) => "none".to_owned(),
         }
     }
 

@@ -106,6 +106,8 @@ fn line(bar: &ProgressBar) -> String {
         Some(length) if length > 0 => {
             format!("{:.0} %", 100.0 * bar.position() as f64 / length as f64)
         }
+        // A computation that has said what it does, and not how long it is.
+        _ if !bar.message().is_empty() => "0 %".to_owned(),
         _ => format!("{} bytes", bar.position()),
     };
     let doing = match bar.message() {

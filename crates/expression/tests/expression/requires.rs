@@ -107,6 +107,26 @@ fn a_boundary_that_touches_the_end_of_existence() {
     assert!(ends.fold(1.0, f64::min) < 1e-9, "{:?}", atlas.plane.vertices());
 }
 
+/// What a start needs to have a value is a condition, whether the system says so or not.
+#[test]
+fn a_start_without_a_value_is_no_start() {
+    let without = ORBITS.replace("requires room >= 0\n", "");
+    let [said, found] = [ORBITS, &without].map(|text| atlas(text, [[1.4, 1.0], [1.9, 5.0]]).1);
+    assert_eq!(said.plane.curves(), found.plane.curves());
+    let text = "parameter a = 0, b = 0\nstate x = asin(a) + log(b)^1.5\n\
+                discrete y = if a > 0 then sqrt(a) else 0\nx' = -1\nwhen x < 1 \"low\"\nend = 1";
+    let (family, atlas) = atlas(text, [[-1.5, -0.5], [1.5, 4.0]]);
+    // The root of a is not needed, and that of log(b) comes behind it.
+    let labels = [[-1.2, 2.0], [1.2, 2.0], [0.5, -0.1], [0.5, 0.5]];
+    let labels = labels.map(|[a, b]| family.label(&Point::new(a, b)).expect("a label"));
+    assert!(labels.iter().all(|label| matches!(label, Itinerary::NoStart(_))), "{labels:?}");
+    for a in [-0.5, 0.5] {
+        let label = family.label(&Point::new(a, 2.0)).expect("a label");
+        assert!(label.fired().is_some(), "{label:?}");
+    }
+    assert!(atlas.plane.regions().len() >= 6);
+}
+
 /// Several conditions are decided in their order; what the second one says where the first one does
 /// not hold does not matter.
 #[test]

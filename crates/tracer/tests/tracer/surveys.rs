@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::thread;
 
 use stickslip_tracer::{
-    AtlasOf, AtlasOptions, Executor, Family, FreeRun, FreeRunOf, LabelOf, Point, Progress,
+    AtlasOf, AtlasOptions, Effort, Executor, Family, FreeRun, FreeRunOf, LabelOf, Point, Progress,
     Surveyor, TraceOptions, VerifyOptions, Watch, Window,
 };
 
@@ -204,6 +204,21 @@ fn a_survey_with_a_doubt_cancelled_anywhere_goes_on_to_the_same_doubt() {
         assert_eq!(resumed.verification, whole.verification, "{last} of {all}");
         assert_eq!(resumed.rounds, whole.rounds);
     }
+}
+
+/// A screen does less, leaves what is in doubt as it is, and says so.
+#[test]
+fn effort_is_a_part_of_the_options() {
+    let [screen, usual, certain] = Effort::ALL.map(|effort| {
+        let options = effort.applied(AtlasOptions { rounds: 2, ..options() });
+        let surveyor = Surveyor { options, ..Surveyor::default() };
+        let atlas = surveyor.atlas(&Unexplained, &WINDOW).unwrap();
+        assert!(!atlas.agrees() && atlas.is_finished() && options.effort == effort);
+        (atlas.verification.tried.iter().sum::<usize>(), atlas.statistics, atlas.rounds)
+    });
+    assert!(10 * screen.0 < usual.0 && 4 * usual.0 < certain.0);
+    assert!(2 * screen.1.free_runs < usual.1.free_runs);
+    assert_eq!(screen.2, 1);
 }
 
 #[test]
