@@ -222,3 +222,25 @@ def test_what_a_start_requires_is_checked() -> None:
     plain.mode("fall", lambda t, y, p, q: [-1.0]).guard("floor", lambda t, y, p, q: y[0])
     with pytest.raises(TypeError, match="requires 2 is of type int"):
         HybridFamily(plain, (0.0, 1.0), [1.0], requires=[lambda t, y, p, q: p, 3])
+
+
+def test_effort_and_progress_in_words() -> None:
+    family, said = ball(), []
+
+    def report(done, steps, doing):
+        said.append(doing)
+
+    atlas = trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="screen", progress=report)
+    options = atlas.document["options"]
+    assert options["effort"] == "screen" and options["verify"]["random_points"] == 250
+    assert options["rounds"] == 1 and len(atlas.curves) == 3 and atlas.objection is None
+    assert said and all(isinstance(one, str) for one in said)
+    few = trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="certain", **FEW)
+    assert few.document["options"]["verify"]["random_points"] == 200
+    assert few.document["options"]["rounds"] == 16
+    with pytest.raises(ValueError, match="effort = 'much'; expected one of screen, default, certain"):
+        trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="much")
+    window = (5.0, 6.0), (2.5, 3.0)
+    screened = stickslip.trace(*window, effort="screen").document["verification"]
+    assert (screened["effort"], screened["random_points"]) == ("screen", 500)
+    assert "effort" not in stickslip.trace(*window).document["verification"]

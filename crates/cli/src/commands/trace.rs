@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::reduced;
@@ -62,9 +62,7 @@ pub struct TraceArguments {
     #[arg(value_parser = number::parse_option)]
     pub tolerance: Option<f64>,
 
-    /// How much is done: certain has twice as fine a grid, five times as many runs that verify and
-    /// twice as many rounds; screen is a first look, with half as fine a grid, a fortieth of the
-    /// random runs, a fifth of those beside boundaries, and no second look. The atlas says which
+    /// How much is done, as the atlas says too
     #[arg(long, value_name = "EFFORT", help_heading = "Collisions", default_value = "default")]
     #[arg(value_parser = effort())]
     pub effort: Effort,
@@ -168,9 +166,22 @@ fn with(effort: Effort) -> &'static str {
 
 /// Reads an effort.
 fn effort() -> impl TypedValueParser<Value = Effort> {
-    let names = Effort::ALL.map(Effort::name);
+    let value = |effort: Effort| {
+        let help = match effort {
+            Effort::Screen => {
+                "A first look: half as fine a grid, a fortieth of the random runs that verify, a fifth \
+                 of those beside boundaries, and no second look"
+            }
+            Effort::Default => "20 000 random collisions, or 10 000 runs of a system",
+            Effort::Certain => {
+                "Twice as fine a grid, five times as many runs that verify, twice as many rounds"
+            }
+        };
+        PossibleValue::new(effort.name()).help(help)
+    };
     let known = |text: String| Effort::ALL.into_iter().find(|effort| effort.name() == text);
-    PossibleValuesParser::new(names).map(move |text| known(text).unwrap_or_default())
+    let values = PossibleValuesParser::new(Effort::ALL.map(value));
+    values.map(move |text| known(text).unwrap_or_default())
 }
 
 /// How many there are.
