@@ -170,9 +170,8 @@ pub fn gaining_lines(
     let usual = Frame::new(range(kappa), range(psi), damping);
     let frame = Frame { law, tangential_damping, ..usual };
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
-    let work = move |report: Report<'_>| {
-        gaining::trace_with(frame, tolerance, effort, report.into())
-    };
+    let work =
+        move |report: Report<'_>| gaining::trace_with(frame, tolerance, effort, report.into());
     let found = watched(py, threads, progress.as_ref(), work)?.map_err(|error| of_atlas(&error))?;
     Ok((found.document().to_string(), found.objection()))
 }

@@ -332,10 +332,7 @@ fn label(runs: &impl Runs, point: &Point) -> Result<Itinerary, FamilyError> {
 }
 
 /// A free run with its margins.
-fn free_run(
-    runs: &impl Runs,
-    point: &Point,
-) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+fn free_run(runs: &impl Runs, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
     let (mut margins, failed) = decided(&runs.conditions(point));
     if let Some(failed) = failed {
         return Ok(FreeRun { label: Itinerary::NoStart(failed), margins });

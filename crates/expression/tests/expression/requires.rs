@@ -47,9 +47,8 @@ fn atlas(text: &str, [low, high]: [[f64; 2]; 2]) -> (SystemFamily, AtlasOf<Syste
 /// The nodes on which a condition vanishes.
 fn limits(atlas: &AtlasOf<SystemFamily>, condition: usize) -> Vec<Point> {
     let curves = atlas.plane.curves().iter();
-    let limits = curves.filter(|curve| {
-        curve.margin.place == Place::Condition && curve.margin.guard == condition
-    });
+    let limits = curves
+        .filter(|curve| curve.margin.place == Place::Condition && curve.margin.guard == condition);
     limits.flat_map(|curve| &curve.nodes).map(|node| node.point).collect()
 }
 
@@ -146,7 +145,8 @@ fn several_conditions() {
 /// Conditions that are joined are several, whose common boundary has corners.
 #[test]
 fn joint_conditions_are_several() {
-    let one = parsed("parameter a = 1, b = 1\nstate x = 1\nx' = -1\nrequires a > 0 and b >= a\nend = 1");
+    let one =
+        parsed("parameter a = 1, b = 1\nstate x = 1\nx' = -1\nrequires a > 0 and b >= a\nend = 1");
     let several =
         parsed("parameter a = 1, b = 1\nstate x = 1\nx' = -1\nrequires a > 0, b >= a\nend = 1");
     assert_eq!((one.text(), one.required.len()), (several.text(), 2));

@@ -1,7 +1,9 @@
 //! How an atlas is made: boundaries are traced, and regions are verified.
 
 use stickslip_model::Collider;
-use stickslip_tracer::{AtlasOptions, Effort, Point, Surveyor, TraceOptions, VerifyOptions, Window};
+use stickslip_tracer::{
+    AtlasOptions, Effort, Point, Surveyor, TraceOptions, VerifyOptions, Window,
+};
 
 use super::draft::{CollisionDraft, integrated, room_beyond};
 use super::error::AtlasError;

@@ -46,8 +46,7 @@ impl Blueprint {
     ) -> PyResult<Self> {
         let (_, options) = settings.checked()?;
         let (mut parts, mut first) = (Parts::new(system)?, Change::new(first)?);
-        let mut required =
-            required.into_iter().map(Function::new).collect::<PyResult<Vec<_>>>()?;
+        let mut required = required.into_iter().map(Function::new).collect::<PyResult<Vec<_>>>()?;
         let (mut parameters, mut own_parameters) = (vec![0.0; 2], vec![0]);
         let at_start = first.functions_mut().chain(&mut required);
         for Function { code, .. } in parts.functions_mut().chain(at_start) {

@@ -4,7 +4,7 @@
 //! needed to go on, from memory or from a file. The runs of the grid are computed again. So is a
 //! verification that was cancelled, and a second look starts again from the network before it.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::executor::Executor;
 use crate::family::Family;
@@ -21,19 +21,18 @@ impl<F: Family> Tracer<'_, F> {
     /// Goes on with the search to its end, or until the watch cancels. Returns whether the end is
     /// reached; if not, a later call goes on, to the same result.
     ///
-    /// A task that is cancelled leaves nothing: the tracer goes back to its state at most about a
-    /// fifth of a second before, and does again what it has done since.
+    /// A task that is cancelled leaves nothing: the tracer goes back to a state between two tasks
+    /// that it has kept, and does again what it has done since.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
     pub fn proceed<E: Executor<F>>(&mut self, executor: &E) -> Traced<bool, F> {
-        /// The shortest time between two states that are kept, and how many times as long it is as
-        /// to keep one.
-        const KEEP: (Duration, u32) = (Duration::from_millis(200), 20);
+        /// How many times as long as to keep a state is the time up to the next one.
+        const KEEP: u32 = 20;
         let watch = self.runs.watch;
         let keep = |tracer: &Self| {
             let begun = Instant::now();
-            (tracer.now(), KEEP.0.max(KEEP.1 * begun.elapsed()), Instant::now())
+            (tracer.now(), KEEP * begun.elapsed(), Instant::now())
         };
         let (mut kept, mut left) = (keep(self), self.steps_left());
         watch.report(Progress::Now { what: self.doing() });
