@@ -208,8 +208,8 @@ def trace(
 
     kappa, psi: intervals, above 0. ratio: interval of g_t/g_n instead of psi, which mu and alpha
     reduce. law, tangential_damping: as in `collide`. tolerance: accuracy of the boundaries in psi,
-    from 1e-11 to 1e-9 times 1 + the largest psi. effort: how much is done, as in `trace_family`; the
-    atlas is compared with 20 000 random collisions, "screen" with 500 and "certain" with 100 000.
+    from 1e-11 to 1e-9 times 1 + the largest psi. effort: how much is done, as in `trace_family`;
+    the atlas is compared with 20 000 random collisions, "screen" with 500 and "certain" with 100 000.
     progress: called now and then with the steps done, all that are known, and, if it takes it, what
     is done now; True shows a bar on stderr. If something speaks against the atlas, it
     says so in an AtlasWarning and in `objection`.

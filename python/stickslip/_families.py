@@ -495,8 +495,8 @@ def trace_family(
     where runs disagree with the regions, the trace looks again, in so many rounds at most.
 
     effort: how much is done, where options, verify and rounds do not say it. "screen" is a first
-    look: half as fine a grid, a fortieth of the random runs, a fifth of those beside curves, and one
-    round, after which what is in doubt stays so. "certain" has twice as fine a grid, five times as
+    look: half as fine a grid, a fortieth of the random runs, a fifth of those beside curves, and
+    one round, after which what is in doubt stays so. "certain" has twice as fine a grid, five times as
     many runs, and twice as many rounds than the 8 of "default". `document["options"]` says which.
 
     What cannot be resolved is part of the atlas: `unresolved`, `findings`, and the regions in
@@ -507,11 +507,12 @@ def trace_family(
     after the other. Their exceptions end the trace and come out as they are, with a note that has
     the parameters; NaN says that a run has no value there, and fails.
 
-    progress(done, steps) or progress(done, steps, doing): called now and then with the steps that are
-    done, those of all stages that have begun (more may come), and what is done now, in words. True
-    shows a bar on stderr. cancelled(): asked every 10 ms between runs; if it is true, the trace ends
-    with what was found so far, and `FamilyAtlas.resume` goes on. Both are called on the thread that traces. Ctrl-C raises
-    TraceInterrupted, a KeyboardInterrupt whose `atlas` can be resumed too.
+    progress(done, steps) or progress(done, steps, doing): called now and then with the steps that
+    are done, those of all stages that have begun (more may come), and what is done now, in words.
+    True shows a bar on stderr. cancelled(): asked every 10 ms between runs; if it is true, the
+    trace ends with what was found so far, and `FamilyAtlas.resume` goes on. Both are called on the
+    thread that traces. Ctrl-C raises TraceInterrupted, a KeyboardInterrupt whose `atlas` can be
+    resumed too.
     """
     if not isinstance(family, HybridFamily):
         raise TypeError(f"{type(family).__name__} is not a HybridFamily")

@@ -56,8 +56,8 @@ class FamilyMargin:
     after: tuple[str, ...]
     guard: str
     #: minimum or maximum (a graze), end (of the run), start (of the phase), exit (where another
-    #: guard ends the phase), branch (of a transition), or condition (of the start, which is named in
-    #: the place of a guard).
+    #: guard ends the phase), branch (of a transition), or condition (of the start, which is named
+    #: in the place of a guard).
     place: str
 
 

@@ -85,9 +85,9 @@ def gaining_lines(
 ) -> GainingLines:
     """The lines in a window on which eps_t is 1 or -1, beyond which a law creates energy, verified.
 
-    kappa, psi, tolerance, effort, progress: as in `trace`. law, tangential_damping: as in `collide`. A line
-    ends where the switches change, and another goes on there. If something speaks against the
-    lines, it says so in an AtlasWarning and in `objection`.
+    kappa, psi, tolerance, effort, progress: as in `trace`. law, tangential_damping: as in
+    `collide`. A line ends where the switches change, and another goes on there. If something speaks
+    against the lines, it says so in an AtlasWarning and in `objection`.
 
     >>> found = gaining_lines((1.2, 1.3), (0.85, 1.0), law="gran/hertz/history")
     >>> [line.eps_t for line in found.lines]

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeAlias, TypeVar
 
-#: Called with what is done, and with all that is known to be done; and, if it takes three arguments,
-#: with words that say what is done now, where this is known.
+#: Called with what is done, and with all that is known to be done; and, if it takes three
+#: arguments, with words that say what is done now, where this is known.
 Report: TypeAlias = Callable[[int, int], object] | Callable[[int, int, str], object]
 #: A callable; True for a bar on stderr.
 Progress: TypeAlias = Report | bool

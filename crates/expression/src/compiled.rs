@@ -219,8 +219,8 @@ impl Compiled {
     ///
     /// # Errors
     /// [`InvalidValue`] if their number is wrong, if one is not finite, if a condition that the
-    /// system requires does not hold, or if a start, an end or a time of a rule is not a number with
-    /// them.
+    /// system requires does not hold, or if a start, an end or a time of a rule is not a number
+    /// with them.
     pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidValue> {
         self.check(parameters)?;
         for (place, room) in self.rooms(parameters).into_iter().enumerate() {

@@ -21,9 +21,10 @@ use crate::system::System;
 
 /// A system whose runs depend on two of its parameters.
 ///
-/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`]. Where no run
-/// starts, a condition does not hold: one that the system [requires](System::required), or, counted
-/// behind those, that a start has a value, such as that what is under a square root is not negative.
+/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`]. Where no
+/// run starts, a condition does not hold: one that the system [requires](System::required), or,
+/// counted behind those, that a start has a value, such as that what is under a square root is not
+/// negative.
 ///
 /// ```
 /// use stickslip_expression::{System, SystemFamily};

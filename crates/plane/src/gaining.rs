@@ -48,8 +48,8 @@ pub struct GainingLine {
 /// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, and compares the regions with runs.
 ///
 /// The lines have a vertex where the switches change, and go on behind it with a kink. Regions are
-/// told apart by |ε_t| alone, so that an atlas of the switches has no part in them, and they none in
-/// it.
+/// told apart by |ε_t| alone, so that an atlas of the switches has no part in them, and they none
+/// in it.
 ///
 /// ```
 /// use stickslip_model::{Contact, presets};

@@ -169,8 +169,8 @@ fn effort() -> impl TypedValueParser<Value = Effort> {
     let value = |effort: Effort| {
         let help = match effort {
             Effort::Screen => {
-                "A first look: half as fine a grid, a fortieth of the random runs that verify, a fifth \
-                 of those beside boundaries, and no second look"
+                "A first look: half as fine a grid, a fortieth of the random runs that verify, a \
+                 fifth of those beside boundaries, and no second look"
             }
             Effort::Default => "20 000 random collisions, or 10 000 runs of a system",
             Effort::Certain => {

@@ -39,8 +39,8 @@ pub struct HybridFamily {
 
 #[pymethods]
 impl HybridFamily {
-    /// A family with a system whose modes all have the guards of the family, the start, what changes
-    /// it and what it requires, the end, and what files say about it.
+    /// A family with a system whose modes all have the guards of the family, the start, what
+    /// changes it and what it requires, the end, and what files say about it.
     #[new]
     fn new(
         py: Python<'_>,
