@@ -44,6 +44,10 @@ struct RuleRow {
     sees_jumps: bool,
 }
 
+/// The first mode, the time and the state at the start, what chooses another first mode where it is
+/// negative, and what must not be negative for a start.
+type StartRow = (usize, f64, Vec<u32>, Option<(u32, usize)>, Vec<u32>);
+
 #[pymethods]
 impl Tape {
     #[new]
@@ -161,7 +165,7 @@ impl Tape {
     fn system(
         &self,
         parameters: Vec<String>,
-        start: (usize, f64, Vec<u32>, Option<(u32, usize)>, Vec<u32>),
+        start: StartRow,
         modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
         held: Vec<String>,
         surfaces: Vec<(String, u32)>,

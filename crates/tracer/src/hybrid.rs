@@ -311,7 +311,8 @@ impl<P: DynamicProblem, M: Method> Family for DynamicFamily<P, M> {
 
 /// The margins of the conditions of a start that are decided, and the first one that does not hold.
 fn decided(conditions: &[f64]) -> (Vec<(Margin, f64)>, Option<usize>) {
-    let failed = conditions.iter().position(|value| !(*value >= 0.0));
+    let holds = |value: &f64| *value >= 0.0;
+    let failed = conditions.iter().position(|value| !holds(value));
     let decided = conditions[..failed.map_or(conditions.len(), |last| last + 1)].iter();
     let margin = |guard| Margin { exits: Vec::new(), guard, place: Place::Condition };
     let margins = decided.enumerate().map(|(guard, &value)| (margin(guard), value));

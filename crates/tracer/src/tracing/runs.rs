@@ -61,11 +61,14 @@ impl<'a, F: Family> Runs<'a, F> {
 
     /// Counts a run that follows.
     fn count(&self, runs: &Cell<usize>) -> Traced<(), F> {
-        if self.watch.is_cancelled() {
-            return Err(TraceError::Cancelled);
-        }
+        self.go_on()?;
         runs.set(runs.get() + 1);
         Ok(())
+    }
+
+    /// Ends the search if the watch cancels it.
+    pub(crate) fn go_on(&self) -> Traced<(), F> {
+        if self.watch.is_cancelled() { Err(TraceError::Cancelled) } else { Ok(()) }
     }
 
     /// The same runs in a larger window, with lengths relative to this one.

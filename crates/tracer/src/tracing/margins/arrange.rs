@@ -55,6 +55,7 @@ impl<F: Family> Lines<'_, F> {
         }
         let reach = 2.0 * self.runs.lengths.same;
         for (vertex, it) in vertices.iter().enumerate() {
+            self.runs.go_on()?;
             for (line, own) in self.all.iter().zip(&mut cuts) {
                 let known = own.iter().any(|cut| cut.vertex == vertex);
                 if let Some((place, _)) = line.near(&it.point, reach).filter(|_| !known) {

@@ -73,6 +73,7 @@ impl<F: Family> Lines<'_, F> {
         let mut doubts = Vec::new();
         let mut all = Vec::new();
         for part in parts {
+            self.runs.go_on()?;
             let sides = self.sides(part, &mut doubts)?;
             if sides[0] != sides[1] {
                 let length = part.length(&self.all[part.line]);
@@ -83,6 +84,7 @@ impl<F: Family> Lines<'_, F> {
         all.sort_by(|one, other| other.0.total_cmp(&one.0));
         let mut seen: Vec<(usize, Seen<F::Label>)> = Vec::new();
         for (_, order, next) in all {
+            self.runs.go_on()?;
             if !self.is_twin(&next, &seen) {
                 seen.push((order, next));
             }
