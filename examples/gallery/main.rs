@@ -242,7 +242,7 @@ fn kind(margin: &Margin) -> usize {
         Place::End => 0,
         Place::Minimum { .. } | Place::Maximum { .. } => 1,
         Place::Exit(_) => 2,
-        Place::Start { .. } | Place::Branch(_) => 3,
+        Place::Start { .. } | Place::Branch(_) | Place::Condition => 3,
     }
 }
 
@@ -252,7 +252,7 @@ fn number(label: &Itinerary) -> String {
         Itinerary::Fires(guards) => guards.len().to_string(),
         Itinerary::Begins(guards) => format!("{}+", guards.len()),
         Itinerary::Accumulates => "∞".to_owned(),
-        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+        Itinerary::Unfinished | Itinerary::Fails | Itinerary::NoStart(_) => "–".to_owned(),
     }
 }
 

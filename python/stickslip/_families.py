@@ -7,6 +7,7 @@ every curve in a window of the parameters on which the sequence of events of its
 from __future__ import annotations
 
 import graphlib
+import json
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -38,7 +39,7 @@ from stickslip._family_atlases import (
     _pairs,
     finished,
 )
-from stickslip._family_options import TraceOptions, VerifyOptions, _json
+from stickslip._family_options import Effort, TraceOptions, VerifyOptions, _json, _plain
 from stickslip._progress import Progress, check, reported
 from stickslip._recorded import Recorded
 from stickslip._shown import Shown
@@ -139,7 +140,10 @@ class HybridFamily:
     t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if
     they depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that
     returns the state, the mode, or (mode, state). If it is recorded and chooses between two modes,
-    the choice is an event "start", whose condition is a boundary.
+    the choice is an event "start", whose condition is a boundary. requires: if there is no start at
+    some parameters, a function requires(t, y, p, q, *args) of t_span[0] and y0 that is negative
+    there, or several, which are decided in their order. Where one is negative, the itinerary is
+    "no start", and neither `start` nor the run need exist; its zero is a boundary.
 
     name, axes: what was traced and the names of the two parameters, for files and pictures. rtol,
     atol, max_step, first_step, guard_scale: as in `solve`; margins are as accurate as the runs. The
@@ -174,6 +178,7 @@ class HybridFamily:
         mode: str | Mode | None = None,
         *,
         start: Function | None = None,
+        requires: Function | Iterable[Function] = (),
         args: tuple[Any, ...] = (),
         name: str = "hybrid systems",
         axes: tuple[str, str] = ("x", "y"),
@@ -206,6 +211,8 @@ class HybridFamily:
             _check_parameters(start, "start")
             callee = start if isinstance(start, Compiled) else table.transition(start, "start")
             first = (None, ("start", _callee(callee)), not isinstance(start, Compiled), None)
+        conditions = _functions(requires)
+        required = [(what, _callee(function)) for what, function in conditions]
         for one in system.modes:
             _check_parameters(one.right_hand_side, f"the right-hand side of mode {one.name!r}")
             for source in one._sources:
@@ -234,7 +241,7 @@ class HybridFamily:
         self._native = _native.HybridFamily(
             table.system(places),
             table.args,
-            ((first_mode, begin, state, []), first),
+            ((first_mode, begin, state, []), first, required),
             end,
             settings,
             (self.name, list(self.axes), names),
@@ -251,7 +258,12 @@ class HybridFamily:
                 if counted:
                     raise CannotRecord("guards of several modes are counted until the run ends")
                 self._recorded = Recorded(
-                    table, (first_mode, begin), state, ("p", "q"), beginning=start
+                    table,
+                    (first_mode, begin),
+                    state,
+                    ("p", "q"),
+                    beginning=start,
+                    required=[function for _, function in conditions],
                 )
                 del settings["guard_scale"]
                 self._settings = settings
@@ -469,7 +481,8 @@ def trace_family(
     options: TraceOptions | None = None,
     verify: VerifyOptions | None = None,
     tolerance: float = 1e-9,
-    rounds: int = 8,
+    rounds: int | None = None,
+    effort: Effort = "default",
     threads: int | None = None,
     progress: Progress | None = None,
     cancelled: Cancelled | None = None,
@@ -481,6 +494,11 @@ def trace_family(
     tolerance: the accuracy that is claimed for the curves, in the units of the parameters. rounds:
     where runs disagree with the regions, the trace looks again, in so many rounds at most.
 
+    effort: how much is done, where options, verify and rounds do not say it. "screen" is a first
+    look: half as fine a grid, a fortieth of the random runs, a fifth of those beside curves, and
+    one round, after which what is in doubt stays so. "certain" has twice as fine a grid, five times as
+    many runs, and twice as many rounds than the 8 of "default". `document["options"]` says which.
+
     What cannot be resolved is part of the atlas: `unresolved`, `findings`, and the regions in
     doubt. If anything speaks against the atlas, it says so in an AtlasWarning and in `objection`.
 
@@ -489,15 +507,16 @@ def trace_family(
     after the other. Their exceptions end the trace and come out as they are, with a note that has
     the parameters; NaN says that a run has no value there, and fails.
 
-    progress(done, steps): called now and then with the steps that are done, and those of all stages
-    that have begun; more may come. True shows a bar on stderr. cancelled(): asked
-    between tasks; if it is true, the trace ends with what was found so far, and
-    `FamilyAtlas.resume` goes on. Both are called on the thread that traces. Ctrl-C raises
-    TraceInterrupted, a KeyboardInterrupt whose `atlas` can be resumed too.
+    progress(done, steps) or progress(done, steps, doing): called now and then with the steps that
+    are done, those of all stages that have begun (more may come), and what is done now, in words.
+    True shows a bar on stderr. cancelled(): asked every 10 ms between runs; if it is true, the
+    trace ends with what was found so far, and `FamilyAtlas.resume` goes on. Both are called on the
+    thread that traces. Ctrl-C raises TraceInterrupted, a KeyboardInterrupt whose `atlas` can be
+    resumed too.
     """
     if not isinstance(family, HybridFamily):
         raise TypeError(f"{type(family).__name__} is not a HybridFamily")
-    window, text = _survey(x, y, options, verify, tolerance, rounds)
+    window, text = _survey(x, y, options, verify, tolerance, rounds, effort)
     check(progress)
     _check_calls(None, cancelled)
     family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
@@ -513,17 +532,18 @@ def _survey(
     options: TraceOptions | None,
     verify: VerifyOptions | None,
     tolerance: float,
-    rounds: int,
+    rounds: int | None,
+    effort: Effort = "default",
 ) -> tuple[_Window, str]:
     """The window, and the options of an atlas as JSON."""
-    text = _json(
-        {
-            "trace": asdict(options or TraceOptions()),
-            "tolerance": _number(tolerance, "tolerance"),
-            "verify": asdict(verify or VerifyOptions()),
-            "rounds": _count(rounds, "rounds"),
-        }
-    )
+    usual = json.loads(_native.atlas_options(_text(effort, "effort")))
+    given = {
+        "trace": usual["trace"] if options is None else asdict(options),
+        "tolerance": _number(tolerance, "tolerance"),
+        "verify": usual["verify"] if verify is None else asdict(verify),
+        "rounds": usual["rounds"] if rounds is None else _count(rounds, "rounds"),
+    }
+    text = json.dumps(usual | _plain(given, ""))
     window = (_interval(x, "x"), _interval(y, "y"))
     if not 0.0 < tolerance < 1e-3 * min(high - low for low, high in window):
         raise ValueError(
@@ -582,6 +602,16 @@ def _places(system: HybridSystem) -> tuple[list[list[int]], list[str]]:
     rows = zip(system.modes, modes, strict=True)
     pairs = [(mode.name, name) for mode, names in rows for name in names]
     return places, [name if every.count(name) == 1 else f"{mode}: {name}" for mode, name in pairs]
+
+
+def _functions(requires: Function | Iterable[Function]) -> list[tuple[str, Function]]:
+    """The conditions of a start, with what messages call them."""
+    given = [requires] if callable(requires) or isinstance(requires, Compiled) else requires
+    functions = [(f"requires {number}", function) for number, function in enumerate(given, 1)]
+    for what, function in functions:
+        _check_function(function, what)
+        _check_parameters(function, what)
+    return functions
 
 
 def _check_parameters(function: Function | None, what: str) -> None:

@@ -30,15 +30,21 @@ class Itinerary:
     """What a run does: the label of a region."""
 
     #: fires (the run comes to its end), begins (it goes on after max_switches events), accumulates
-    #: (its events do, before the end), unfinished (too many steps) or fails.
-    kind: Literal["fires", "begins", "accumulates", "unfinished", "fails"]
+    #: (its events do, before the end), unfinished (too many steps), fails, or no_start (a condition
+    #: of the start does not hold).
+    kind: Literal["fires", "begins", "accumulates", "unfinished", "fails", "no_start"]
     #: The guards that fire, in order, without one that ends the run.
     guards: tuple[str, ...] = ()
+    #: The first condition of the start that does not hold, from 0, if there is no start.
+    condition: int | None = None
 
     def __str__(self) -> str:
         names = ", ".join(self.guards)
         if self.kind == "fires":
             return names or "no events"
+        if self.condition is not None:
+            by = f", by condition {self.condition + 1}" if self.condition else ""
+            return f"no start{by}"
         return f"{names}, …" if self.kind == "begins" else self.kind
 
 
@@ -50,7 +56,8 @@ class FamilyMargin:
     after: tuple[str, ...]
     guard: str
     #: minimum or maximum (a graze), end (of the run), start (of the phase), exit (where another
-    #: guard ends the phase) or branch (of a transition).
+    #: guard ends the phase), branch (of a transition), or condition (of the start, which is named
+    #: in the place of a guard).
     place: str
 
 
@@ -325,7 +332,7 @@ class FamilyAtlas(Plane[_native.FamilyAtlas]):
         if isinstance(label, str):
             return _label((label, []), ())
         ((kind, guards),) = label.items()
-        return _label((kind, guards), self._guards)
+        return _label((kind, guards if isinstance(guards, list) else [guards]), self._guards)
 
     def _margin(self, margin: Mapping[str, Any]) -> FamilyMargin:
         place = margin["place"]
@@ -358,12 +365,15 @@ def _name(guard: int, names: Sequence[str]) -> str:
 
 def _label(label: tuple[str, list[int]], names: Sequence[str]) -> Itinerary:
     kind: Any = label[0]
+    if kind == "no_start":
+        return Itinerary(kind, condition=label[1][0])
     return Itinerary(kind, tuple(_name(guard, names) for guard in label[1]))
 
 
 def _margin(margin: tuple[list[int], int, str], names: Sequence[str]) -> FamilyMargin:
     exits, guard, place = margin
-    return FamilyMargin(tuple(_name(one, names) for one in exits), _name(guard, names), place)
+    name = f"condition {guard + 1}" if place == "condition" else _name(guard, names)
+    return FamilyMargin(tuple(_name(one, names) for one in exits), name, place)
 
 
 def _count_events(itinerary: Itinerary | None) -> int:

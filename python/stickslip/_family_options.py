@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 import operator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from stickslip._compiled import _number
+
+
+#: How much is done for an atlas.
+Effort: TypeAlias = Literal["screen", "default", "certain"]
 
 
 @dataclass(frozen=True)

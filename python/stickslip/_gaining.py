@@ -12,6 +12,7 @@ import numpy as np
 
 from stickslip import _laws, _native, _pictures
 from stickslip._axes import svg
+from stickslip._family_options import Effort
 from stickslip._laws import Law
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular
@@ -78,14 +79,15 @@ def gaining_lines(
     law: Law | None = None,
     tangential_damping: float = 0.0,
     tolerance: float | None = None,
+    effort: Effort = "default",
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> GainingLines:
     """The lines in a window on which eps_t is 1 or -1, beyond which a law creates energy, verified.
 
-    kappa, psi, tolerance, progress: as in `trace`. law, tangential_damping: as in `collide`. A line
-    ends where the switches change, and another goes on there. If something speaks against the
-    lines, it says so in an AtlasWarning and in `objection`.
+    kappa, psi, tolerance, effort, progress: as in `trace`. law, tangential_damping: as in
+    `collide`. A line ends where the switches change, and another goes on there. If something speaks
+    against the lines, it says so in an AtlasWarning and in `objection`.
 
     >>> found = gaining_lines((1.2, 1.3), (0.85, 1.0), law="gran/hertz/history")
     >>> [line.eps_t for line in found.lines]
@@ -94,7 +96,7 @@ def gaining_lines(
     chosen = _laws.arguments(law, tangential_damping)
     with reported(progress, "gaining_lines") as report:
         text, objection = _native.gaining_lines(
-            kappa, psi, (damping, chosen), tolerance, _threads(threads), report
+            kappa, psi, (damping, chosen), (tolerance, effort), _threads(threads), report
         )
     document = json.loads(text)
     lines = tuple(

@@ -76,7 +76,7 @@ class Tape:
     def system(
         self,
         parameters: list[str],
-        start: tuple[int, float, list[int], tuple[int, int] | None],
+        start: tuple[int, float, list[int], tuple[int, int] | None, list[int]],
         modes: list[tuple[str, list[int], list[dict[str, Any]]]],
         held: list[str],
         surfaces: list[tuple[str, int]],
@@ -233,7 +233,7 @@ class Atlas:
         psi: tuple[float, float],
         ratio: tuple[tuple[float, float], float, float] | None,
         collisions: tuple[float, _Law],
-        tolerance: float | None,
+        accuracy: tuple[float | None, str],
         threads: int,
         progress: _Report | None = None,
     ) -> Atlas: ...
@@ -257,7 +257,7 @@ class HybridFamily:
         cls,
         system: tuple[list[Any], list[Any], tuple[Any, Any]],
         args: tuple[Any, ...],
-        start: tuple[tuple[int, float, _Floats, list[int]], Any],
+        start: tuple[tuple[int, float, _Floats, list[int]], Any, list[Any]],
         end: float,
         settings: dict[str, Any],
         description: tuple[str, list[str], list[str]],
@@ -331,11 +331,12 @@ class FamilyAtlas:
     def picture(self) -> str: ...
     def locate(self, x: _Floats, y: _Floats) -> tuple[NDArray[np.int64], _Floats]: ...
 
+def atlas_options(effort: str) -> str: ...
 def gaining_lines(
     kappa: tuple[float, float],
     psi: tuple[float, float],
     collisions: tuple[float, _Law],
-    tolerance: float | None,
+    accuracy: tuple[float | None, str],
     threads: int,
     progress: _Report | None = None,
 ) -> tuple[str, str | None]: ...

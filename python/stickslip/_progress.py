@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeAlias, TypeVar
 
-#: Called with what is done, and with all that is known to be done.
-Report: TypeAlias = Callable[[int, int], object]
+#: Called with what is done, and with all that is known to be done; and, if it takes three
+#: arguments, with words that say what is done now, where this is known.
+Report: TypeAlias = Callable[[int, int], object] | Callable[[int, int, str], object]
 #: A callable; True for a bar on stderr.
 Progress: TypeAlias = Report | bool
 Found = TypeVar("Found")
@@ -56,8 +58,10 @@ def reporting(progress: Progress | None, what: str, run: Callable[[Report | None
 def reported(progress: Progress | None, what: str) -> Iterator[Report | None]:
     """The callable that reports; with True a bar of tqdm, or a line where it is not installed."""
     check(progress)
-    if not isinstance(progress, bool):
-        yield progress
+    if progress is None:
+        yield None
+    elif not isinstance(progress, bool):
+        yield _told(progress)
     elif not progress:
         yield None
     else:
@@ -67,11 +71,22 @@ def reported(progress: Progress | None, what: str) -> Iterator[Report | None]:
             yield from _line(what)
         else:
             with tqdm(desc=what, file=sys.stderr) as bar:
-                yield lambda done, steps: _advance(bar, done, steps)
+                yield lambda done, steps, doing="": _advance(bar, done, steps, doing)
 
 
-def _advance(bar: Any, done: int, steps: int) -> None:
+def _told(progress: Callable[..., object]) -> Report:
+    """The same callable, which gets words only if it takes them."""
+    try:
+        inspect.signature(progress).bind(0, 0, "")
+    except (TypeError, ValueError):
+        return lambda done, steps, doing="": progress(done, steps)
+    return lambda done, steps, doing="": progress(done, steps, doing)
+
+
+def _advance(bar: Any, done: int, steps: int, doing: str) -> None:
     bar.total = steps
+    if doing:
+        bar.set_postfix_str(doing, refresh=False)
     bar.update(done - bar.n)
 
 
@@ -80,9 +95,9 @@ def _line(what: str) -> Iterator[Report]:
     last = -_INTERVAL
     text = f"{what}: nothing is done yet"
 
-    def report(done: int, steps: int) -> None:
+    def report(done: int, steps: int, doing: str = "") -> None:
         nonlocal last, text
-        text = f"{what}: {done} of {steps}"
+        text = f"{what}: {done} of {steps}{f', {doing}' if doing else ''}"
         if time.monotonic() - last >= _INTERVAL:
             last = time.monotonic()
             sys.stderr.write(f"\r{text}")

@@ -29,7 +29,7 @@ class Recorded:
 
     names: those of parameters that functions get before further arguments. values: their values, if
     these are known. beginning: a function of the start that returns the state there, the mode, or
-    (mode, state).
+    (mode, state). required: functions of the start that must not be negative there.
 
     Raises CannotRecord with the reason, if a function is no formula.
     """
@@ -42,6 +42,7 @@ class Recorded:
         names: Sequence[str] = (),
         values: Sequence[float] | None = None,
         beginning: Function | None = None,
+        required: Sequence[Function] = (),
     ) -> None:
         if not state.size:
             raise CannotRecord("there is no state")
@@ -79,15 +80,20 @@ class Recorded:
         self.first = begin[0]
         #: What chooses the first mode, and that where it is below 0.
         self.otherwise: tuple[int, int] | None = None
+        now = (table.variables.named(held),) if held else ()
+        at, args = (self.start, state.tolist()), (*now, *self.behind)
+        self.required = [
+            (what, one, self.formulas(what, one, 1, at, args))
+            for what, one in ((f"requires {n}", one) for n, one in enumerate(required, 1))
+        ]
         if beginning is None:
             first = [native.constant(value) for value in state.tolist()]
         else:
-            now = (table.variables.named(held),) if held else ()
-            at, args = (self.start, state.tolist()), (*now, *self.behind)
             first = self.begun(beginning, args, at)
         first += [native.constant(value) for value in held]
         self.from_start = first
-        given = (self.first, self.start, first, self.otherwise)
+        conditions = [formula for _, _, (formula,) in self.required]
+        given = (self.first, self.start, first, self.otherwise, conditions)
         labels, surfaces = table.variables.labels, list(self.surfaces.items())
         try:
             made = native.system(list(names), given, modes, labels, surfaces)
@@ -407,6 +413,11 @@ class Recorded:
         """Refuses formulas that differ at the start."""
         at = (self.start, np.append(self.state, self.table.variables.flat))
         native = self.tape.native
+        for what, function, formulas in self.required:
+            found = native.evaluate(formulas, self.start, at[1].tolist(), list(values))
+            self.same(what, function, at, values, found)
+            if not found[0] >= 0.0:
+                return
         found = native.evaluate(self.from_start, self.start, at[1].tolist(), list(values))
         first = self.first
         if self.otherwise is not None:

@@ -164,3 +164,84 @@ def test_what_does_not_fit_is_refused() -> None:
         HybridFamily(system, (0, 1), [1.0])
     with pytest.raises(TypeError, match="is not a FormulaSystem"):
         HybridFamily.of(HybridSystem(), "p", "q")
+
+
+@pytest.mark.parametrize("record", [True, False])
+def test_a_start_exists_under_conditions(record, tmp_path) -> None:
+    system = HybridSystem()
+    fall = system.mode("fall", lambda t, y, p, q: [-1.0])
+    fall.guard("floor", lambda t, y, p, q: y[0])
+    asked = []
+
+    def start(t, y, p, q):
+        asked.append(p)
+        return [q + math.sqrt(p) if isinstance(p, float) else q + np.sqrt(p)]
+
+    family = HybridFamily(
+        system,
+        (0.0, 1.0),
+        [1.0],
+        start=start,
+        requires=[lambda t, y, p, q: p, lambda t, y, p, q: 1.0 + y[0] - q - p],
+        record=record,
+    )
+    assert (family.reason is None) == record
+    assert str(family.label(-1.0, 1.0)) == "no start"
+    assert str(family.label(1.0, 1.5)) == "no start, by condition 2"
+    assert family.label(1.0, 1.5) == stickslip.Itinerary("no_start", condition=1)
+    margins = dict(family.margins(-1.0, 1.0))
+    assert margins == {stickslip.FamilyMargin((), "condition 1", "condition"): -1.0}
+    asked.clear()
+    family.labels(-0.5, [0.5, 1.0, 1.5])
+    # Where no run starts, nothing asks for the start.
+    assert not asked
+    atlas = trace_family(family, (-0.5, 1.5), (0.1, 1.9), **FEW)
+    assert atlas.objection is None and len(atlas.regions) == 4
+    assert not any(region.doubtful for region in atlas.regions)
+    kinds = {str(region.itinerary) for region in atlas.regions}
+    assert kinds == {"no start", "no start, by condition 2", "no events", "floor"}
+    for curve in atlas.curves:
+        if curve.margin.place == "condition":
+            off = {
+                "condition 1": lambda p, q: p,
+                "condition 2": lambda p, q: 2.0 - q - p,
+            }[curve.margin.guard]
+            assert max(abs(off(p, q)) for p, q in curve.points) < 1e-9
+    atlas.save(tmp_path / "atlas.json")
+    read = stickslip.FamilyAtlas.load(tmp_path / "atlas.json")
+    assert [one.itinerary for one in read.regions] == [one.itinerary for one in atlas.regions]
+
+
+def test_what_a_start_requires_is_checked() -> None:
+    text = "parameter a = 1, b = 1\nstate x = 1\nx' = -a\nrequires a > b\nend = 1"
+    system = stickslip.system(text)
+    with pytest.raises(ValueError, match="condition 1 that the system requires"):
+        system.solve()
+    family = HybridFamily.of(system, "a", "b")
+    assert [str(one) for one in family.labels([2.0, 1.0], 1.5)] == ["no events", "no start"]
+    plain = HybridSystem()
+    plain.mode("fall", lambda t, y, p, q: [-1.0]).guard("floor", lambda t, y, p, q: y[0])
+    with pytest.raises(TypeError, match="requires 2 is of type int"):
+        HybridFamily(plain, (0.0, 1.0), [1.0], requires=[lambda t, y, p, q: p, 3])
+
+
+def test_effort_and_progress_in_words() -> None:
+    family, said = ball(), []
+
+    def report(done, steps, doing):
+        said.append(doing)
+
+    atlas = trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="screen", progress=report)
+    options = atlas.document["options"]
+    assert options["effort"] == "screen" and options["verify"]["random_points"] == 250
+    assert options["rounds"] == 1 and len(atlas.curves) == 3 and atlas.objection is None
+    assert said and all(isinstance(one, str) for one in said)
+    few = trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="certain", **FEW)
+    assert few.document["options"]["verify"]["random_points"] == 200
+    assert few.document["options"]["rounds"] == 16
+    with pytest.raises(ValueError, match="effort = 'much'; expected one of screen, default"):
+        trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="much")
+    window = (5.0, 6.0), (2.5, 3.0)
+    screened = stickslip.trace(*window, effort="screen").document["verification"]
+    assert (screened["effort"], screened["random_points"]) == ("screen", 500)
+    assert "effort" not in stickslip.trace(*window).document["verification"]

@@ -44,7 +44,7 @@ impl PerRun {
             farthest,
             ..VerifyOptions::default()
         };
-        AtlasOptions { trace, tolerance, verify, rounds }
+        AtlasOptions { trace, tolerance, verify, rounds, ..AtlasOptions::default() }
     }
 }
 

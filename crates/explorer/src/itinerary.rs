@@ -59,6 +59,7 @@ pub fn of_label(label: &Itinerary) -> u32 {
         Itinerary::Accumulates => Code::BEGIN.then(b'z').end(),
         Itinerary::Unfinished => Code::BEGIN.then(b'u').end(),
         Itinerary::Fails => 0,
+        Itinerary::NoStart(_) => Code::BEGIN.then(b'n').end(),
     }
 }
 
@@ -70,6 +71,7 @@ pub fn words(label: &Itinerary, rules: &[String]) -> String {
         Itinerary::Accumulates => return "events accumulate".to_owned(),
         Itinerary::Unfinished => return "too many steps".to_owned(),
         Itinerary::Fails => return "no run".to_owned(),
+        Itinerary::NoStart(_) => return "no start".to_owned(),
     };
     let several = |run: &[usize]| {
         let name = rules.get(run[0]).map_or("?", String::as_str);

@@ -12,7 +12,7 @@ use crate::graph::{Formula, Variable};
 use crate::program::{Inputs, Program};
 use crate::resets::Resets;
 use crate::run::{Mode, Reaction, Rest, Runnable, Ticks};
-use crate::system::{self, Next, Rule, Slide, System, Trigger};
+use crate::system::{self, Condition, Next, Rule, Slide, System, Trigger};
 
 /// A system that is ready for parameters.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct Compiled {
     first: usize,
     /// The first mode where one of the last numbers is negative, and none before it.
     otherwise: Vec<usize>,
+    /// Conditions of a run, of which the very last numbers decide.
+    required: Vec<Condition>,
     slides: Vec<Continuation>,
     /// Computes [`System::fixed_formulas`] from parameters.
     numbers: Program,
@@ -92,6 +94,7 @@ impl System {
             clocks: self.modes.iter().map(|mode| mode.rules.iter().map(clock).collect()).collect(),
             first: self.first,
             otherwise: self.otherwise.iter().map(|(_, mode)| *mode).collect(),
+            required: self.required.clone(),
             slides: self.slides.iter().map(|slide| self.continuation(slide)).collect(),
             numbers: Program::compile(&self.graph, &fixed, inputs),
             count: fixed.len(),
@@ -215,12 +218,35 @@ impl Compiled {
     /// The system with numbers for its parameters.
     ///
     /// # Errors
-    /// [`InvalidValue`] if their number is wrong, if one is not finite, or if a start, an end
-    /// or a time of a rule is not a number with them.
+    /// [`InvalidValue`] if their number is wrong, if one is not finite, if a condition that the
+    /// system requires does not hold, or if a start, an end or a time of a rule is not a number
+    /// with them.
     pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidValue> {
+        self.check(parameters)?;
+        for (place, room) in self.rooms(parameters).into_iter().enumerate() {
+            let what = || format!("condition {} that the system requires", place + 1);
+            InvalidValue::check(what(), room, "a number that is not negative", room >= 0.0)?;
+        }
+        self.where_it_may(parameters)
+    }
+
+    /// The numbers that must not be negative for a run, in the order of [`System::required`].
+    pub(crate) fn rooms(&self, parameters: &[f64]) -> Vec<f64> {
+        if self.required.is_empty() {
+            return Vec::new();
+        }
+        let mut numbers = vec![f64::NAN; self.count];
+        self.numbers.run(f64::NAN, parameters, &mut numbers);
+        let values = &numbers[self.count - self.required.len()..];
+        self.required.iter().zip(values).map(|(condition, &it)| condition.room(it)).collect()
+    }
+
+    /// As [`Self::with`], whether what the system requires holds or not.
+    pub(crate) fn where_it_may(&self, parameters: &[f64]) -> Result<Runnable, InvalidValue> {
         self.check(parameters)?;
         let mut numbers = vec![f64::NAN; self.count];
         self.numbers.run(f64::NAN, parameters, &mut numbers);
+        numbers.truncate(self.count - self.required.len());
         let mut numbers = Numbers(numbers.into_iter());
         let starts = self.components.iter();
         let state = starts.map(|it| numbers.next(|| format!("the start of `{it}`")));
@@ -239,7 +265,7 @@ impl Compiled {
         }
         // Where a branch has no value, the system runs as it is.
         let branched = self.branched.as_ref().and_then(|branched| {
-            Some(Box::new((branched.0.with(parameters).ok()?, branched.1.with(parameters))))
+            Some(Box::new((branched.0.where_it_may(parameters).ok()?, branched.1.with(parameters))))
         });
         let runnable = Runnable {
             branched,

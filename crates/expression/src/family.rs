@@ -2,6 +2,7 @@
 
 mod align;
 mod start;
+mod values;
 
 use std::borrow::Cow;
 
@@ -20,7 +21,10 @@ use crate::system::System;
 
 /// A system whose runs depend on two of its parameters.
 ///
-/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`].
+/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`]. Where no
+/// run starts, a condition does not hold: one that the system [requires](System::required), or,
+/// counted behind those, that a start has a value, such as that what is under a square root is not
+/// negative.
 ///
 /// ```
 /// use stickslip_expression::{System, SystemFamily};
@@ -57,16 +61,27 @@ impl DynamicProblem for Plane {
     type System = Runnable;
 
     fn at(&self, point: &Point) -> Option<DynamicSetting<Runnable>> {
-        let mut parameters = self.parameters.clone();
-        for (&axis, value) in self.axes.iter().zip([point.x, point.y]) {
-            parameters[axis] = value;
-        }
+        let parameters = self.parameters_at(point);
         // Where a start or a period is not a number, there is no run.
-        let system = self.compiled.with(&parameters).ok()?;
+        let system = self.compiled.where_it_may(&parameters).ok()?;
         let start = system.start();
         let (mode, s, state) = (start.mode, start.s, start.state.to_vec());
         let end = self.end.unwrap_or(system.end());
         (end > s).then_some(DynamicSetting { system, mode, s, state, end })
+    }
+
+    fn conditions(&self, point: &Point) -> Vec<f64> {
+        self.compiled.rooms(&self.parameters_at(point))
+    }
+}
+
+impl Plane {
+    fn parameters_at(&self, point: &Point) -> Vec<f64> {
+        let mut parameters = self.parameters.clone();
+        for (&axis, value) in self.axes.iter().zip([point.x, point.y]) {
+            parameters[axis] = value;
+        }
+        parameters
     }
 }
 
@@ -113,7 +128,9 @@ impl SystemFamily {
             }
         };
         // Sequences are those of rules alone.
-        let compiled = order.align(&system).compile_as_it_is()?;
+        let mut aligned = order.align(&system);
+        values::require_values(&mut aligned);
+        let compiled = aligned.compile_as_it_is()?;
         let rules = order.names;
         compiled.check(parameters)?;
         let count = parameters.len();

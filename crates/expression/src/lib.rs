@@ -69,7 +69,7 @@ pub use run::Runnable;
 pub use sensitivity::{By, Moving, Sensitivities, SensitivityError};
 pub use sliding::NotSliding;
 pub use stickslip_number::InvalidValue;
-pub use system::{Component, Mode, Next, Parameter, Rest, Rule, System, Trigger};
+pub use system::{Component, Condition, Mode, Next, Parameter, Rest, Rule, System, Trigger};
 pub use text::{TextError, format};
 
 #[doc = include_str!("../README.md")]

@@ -21,6 +21,8 @@ pub struct System {
     pub first: usize,
     /// Formulas of parameters, and the first mode where one is negative, and none before it.
     pub otherwise: Vec<(Formula, usize)>,
+    /// Conditions of parameters under which there is a run, decided in this order.
+    pub required: Vec<Condition>,
     /// The time at the start.
     pub start: Option<Formula>,
     /// The time at the end.
@@ -31,6 +33,24 @@ pub struct System {
     pub unslid: Option<Box<System>>,
     /// Along what the modes of such a system slide.
     pub surfaces: Vec<Vec<Formula>>,
+}
+
+/// Where a formula is negative, or where it is not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condition {
+    /// The formula.
+    pub formula: Formula,
+    /// Whether the condition holds where it is negative; otherwise where it is 0 or above.
+    pub below: bool,
+}
+
+impl Condition {
+    /// A number that is negative where the condition does not hold, if the formula is `value`. It
+    /// changes as the formula does.
+    pub(crate) fn room(self, value: f64) -> f64 {
+        // A condition that does not hold at 0 is off it by the smallest double.
+        if self.below { (-value).next_down() } else { value }
+    }
 }
 
 /// Modes that slide along the same surfaces: 5ᵏ for each choice of above, below, sliding, released
@@ -59,6 +79,7 @@ impl System {
             }
         }
         formulas.extend(self.otherwise.iter().map(|(formula, _)| *formula));
+        formulas.extend(self.required.iter().map(|condition| condition.formula));
         formulas
     }
 

@@ -43,6 +43,6 @@ pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, ParameterPlace, Unlocated};
 pub(crate) use regions::polyline;
 pub use regions::{CollisionAtlas, Regions, switch_count};
-pub use tracing::{divide, trace};
+pub use tracing::{divide, trace, trace_with};
 pub(crate) use tracing::{require_traceable, trace_options};
 pub use verification::{EulerFields, MismatchFields, VerificationReport};

@@ -3,7 +3,7 @@
 
 use stickslip_model::Contact;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Atlas, AtlasOptions, Curve, Names, Point, Surveyor};
+use stickslip_tracer::{Atlas, AtlasOptions, Curve, Effort, Names, Point, Surveyor};
 
 use crate::atlas::{
     AtlasError, BoundaryKind, Frame, itinerary, polyline, require_traceable, trace_options,
@@ -27,8 +27,7 @@ pub struct Gaining {
     pub tolerance: f64,
     plane: CollisionPlane,
     family: CollisionFamily,
-    /// All regions in traced coordinates, with what speaks against them. Changes of the switches
-    /// divide the regions of |ε_t| further.
+    /// The regions in traced coordinates, with what speaks against them.
     pub atlas: Atlas<CollisionLabel, Margin>,
 }
 
@@ -46,13 +45,11 @@ pub struct GainingLine {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
-/// compares the regions with runs.
+/// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, and compares the regions with runs.
 ///
-/// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and
-/// history by displacement, it touches one of the switches. Within some 1e-6 of such a point
-/// changes stay unresolved, and the regions beside it are in doubt: [`Gaining::gains`] computes the
-/// collision there.
+/// The lines have a vertex where the switches change, and go on behind it with a kink. Regions are
+/// told apart by |ε_t| alone, so that an atlas of the switches has no part in them, and they none
+/// in it.
 ///
 /// ```
 /// use stickslip_model::{Contact, presets};
@@ -81,18 +78,26 @@ pub fn trace<'w>(
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
 ) -> Result<Gaining, AtlasError> {
-    trace_watched(frame, tolerance, watch.into())
+    trace_with(frame, tolerance, Effort::Default, watch.into())
 }
 
-/// [`trace`], compiled once, in this crate, as with atlases.
-fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaining, AtlasError> {
+/// As [`trace`], with another effort. It is compiled once, in this crate, as with atlases.
+///
+/// # Errors
+/// As [`trace`].
+pub fn trace_with(
+    frame: Frame,
+    tolerance: f64,
+    effort: Effort,
+    watch: Watch<'_>,
+) -> Result<Gaining, AtlasError> {
     let plane = frame.plane()?;
     require_traceable(&plane, tolerance)?;
-    let options = AtlasOptions {
+    let options = effort.applied(AtlasOptions {
         trace: trace_options(&plane, tolerance),
         tolerance: plane.sheet().resolution(tolerance),
         ..AtlasOptions::default()
-    };
+    });
     let surveyor = Surveyor { options, executor: InParallel, watch };
     let family = plane.gaining();
     let atlas =
@@ -178,8 +183,12 @@ impl Names<CollisionLabel, Margin> for Gaining {
     }
 
     fn text(&self, label: &CollisionLabel) -> String {
-        let itinerary = itinerary(self.plane.first(), label);
-        if gains(label) { format!("{itinerary} with |eps_t| above 1") } else { itinerary }
+        let text = match label.last() {
+            _ if gains(label) => "|eps_t| above 1",
+            None => "|eps_t| up to 1",
+            Some(_) => return itinerary(self.plane.first(), label),
+        };
+        text.to_owned()
     }
 
     fn kind(&self, margin: &Margin) -> &'static str {

@@ -73,6 +73,8 @@ impl Signals {
 struct State {
     done: AtomicUsize,
     steps: AtomicUsize,
+    /// What is done now, in words.
+    doing: Mutex<&'static str>,
     abandoned: AtomicBool,
 }
 
@@ -85,6 +87,10 @@ impl State {
         match progress {
             Progress::Begin { steps } => self.steps.fetch_add(steps, Ordering::Relaxed),
             Progress::Advance { steps } => self.done.fetch_add(steps, Ordering::Relaxed),
+            Progress::Now { what } => {
+                *lock(&self.doing) = what;
+                0
+            }
         };
         if self.abandoned.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Abandoned));
@@ -95,8 +101,24 @@ impl State {
     fn tell(&self, py: Python<'_>, function: Option<&Py<PyAny>>) -> PyResult<()> {
         let Some(function) = function else { return Ok(()) };
         let [done, steps] = [&self.done, &self.steps].map(|count| count.load(Ordering::Relaxed));
-        function.call1(py, (done, steps)).map(drop)
+        tell(py, function, (done, steps), *lock(&self.doing))
     }
+}
+
+/// Calls `function` with the steps that are done, with all that have begun, and with what is done
+/// now, if the work says it.
+pub fn tell(
+    py: Python<'_>,
+    function: &Py<PyAny>,
+    (done, steps): (usize, usize),
+    doing: &str,
+) -> PyResult<()> {
+    let told = if doing.is_empty() {
+        function.call1(py, (done, steps))
+    } else {
+        function.call1(py, (done, steps, doing))
+    };
+    told.map(drop)
 }
 
 /// What `work` makes on so many threads, or on one for each core if the number is 0.

@@ -68,7 +68,7 @@ mod _native {
     #[pymodule_export]
     use super::orbits::{OrbitSystem, branch_picture};
     #[pymodule_export]
-    use super::planes::{Atlas, gaining_lines};
+    use super::planes::{Atlas, atlas_options, gaining_lines};
     #[pymodule_export]
     use super::stacks::stack;
     #[pymodule_export]

@@ -9,6 +9,7 @@ use stickslip_plane::atlas::{self, AtlasDocument, Frame, RatioRange, SCHEMA, Unl
 use stickslip_plane::gaining;
 use stickslip_plane::progress::Report;
 use stickslip_plane::sealed;
+use stickslip_tracer::{AtlasOptions, Effort};
 
 use crate::arrays::{expect_equal, numbers};
 use crate::background::watched;
@@ -28,7 +29,7 @@ impl Atlas {
     /// Traces the boundaries between two κ and two ψ; `ratio` is an interval of g_t/g_n with μ and
     /// α that `psi` was computed from. The collisions have this damping and this law.
     #[staticmethod]
-    #[pyo3(signature = (kappa, psi, ratio, collisions, tolerance, threads, progress=None))]
+    #[pyo3(signature = (kappa, psi, ratio, collisions, accuracy, threads, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn trace(
         py: Python<'_>,
@@ -36,10 +37,11 @@ impl Atlas {
         psi: (f64, f64),
         ratio: Option<((f64, f64), f64, f64)>,
         collisions: (f64, LawChoice),
-        tolerance: Option<f64>,
+        accuracy: (Option<f64>, String),
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
+        let (tolerance, effort) = (accuracy.0, effort_of(&accuracy.1)?);
         let range = |(low, high): (f64, f64)| Range { low, high };
         let ratio = ratio.map(|(ratio, mu, alpha)| RatioRange {
             range: range(ratio),
@@ -50,7 +52,7 @@ impl Atlas {
         let usual = Frame::new(range(kappa), range(psi), damping);
         let frame = Frame { ratio, law, tangential_damping, ..usual };
         let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
-        let work = move |report: Report<'_>| atlas::trace(frame, tolerance, report);
+        let work = move |report: Report<'_>| atlas::trace_with(frame, tolerance, effort, report);
         let verified = watched(py, threads, progress.as_ref(), work)?;
         let verified = verified.map_err(|error| of_atlas(&error))?;
         let document = AtlasDocument::new(&verified);
@@ -135,25 +137,41 @@ impl Atlas {
     }
 }
 
+/// The effort with a name.
+pub fn effort_of(name: &str) -> PyResult<Effort> {
+    let known = Effort::ALL.into_iter().find(|effort| effort.name() == name);
+    let names = Effort::ALL.map(Effort::name).join(", ");
+    known.ok_or_else(|| bad_input(format!("effort = {name:?}; expected one of {names}")))
+}
+
+/// The options of an atlas of a family with this effort, as JSON.
+#[pyfunction]
+pub fn atlas_options(effort: &str) -> PyResult<String> {
+    let options = effort_of(effort)?.applied(AtlasOptions::default());
+    serde_json::to_string(&options).map_err(failed)
+}
+
 /// The lines of a window on which |ε_t| is 1, as JSON, and what speaks against them.
 #[pyfunction]
-#[pyo3(signature = (kappa, psi, collisions, tolerance, threads, progress=None))]
+#[pyo3(signature = (kappa, psi, collisions, accuracy, threads, progress=None))]
 pub fn gaining_lines(
     py: Python<'_>,
     kappa: (f64, f64),
     psi: (f64, f64),
     collisions: (f64, LawChoice),
-    tolerance: Option<f64>,
+    accuracy: (Option<f64>, String),
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Option<String>)> {
+    let (tolerance, effort) = (accuracy.0, effort_of(&accuracy.1)?);
     let range = |(low, high): (f64, f64)| Range { low, high };
     let (damping, law) = collisions;
     let (law, tangential_damping) = law.law()?;
     let usual = Frame::new(range(kappa), range(psi), damping);
     let frame = Frame { law, tangential_damping, ..usual };
     let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
-    let work = move |report: Report<'_>| gaining::trace(frame, tolerance, report);
+    let work =
+        move |report: Report<'_>| gaining::trace_with(frame, tolerance, effort, report.into());
     let found = watched(py, threads, progress.as_ref(), work)?.map_err(|error| of_atlas(&error))?;
     Ok((found.document().to_string(), found.objection()))
 }

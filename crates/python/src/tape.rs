@@ -4,8 +4,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use stickslip_expression::{
-    Binary, Component, Formula, Graph, Inputs, Mode, Next, Parameter, Program, Rest, Rule, System,
-    Trigger, Unary, Variable,
+    Binary, Component, Condition, Formula, Graph, Inputs, Mode, Next, Parameter, Program, Rest,
+    Rule, System, Trigger, Unary, Variable,
 };
 use stickslip_solver::Direction;
 
@@ -43,6 +43,10 @@ struct RuleRow {
     priority: i8,
     sees_jumps: bool,
 }
+
+/// The first mode, the time and the state at the start, what chooses another first mode where it is
+/// negative, and what must not be negative for a start.
+type StartRow = (usize, f64, Vec<u32>, Option<(u32, usize)>, Vec<u32>);
 
 #[pymethods]
 impl Tape {
@@ -154,19 +158,22 @@ impl Tape {
     }
 
     /// A system of formulas of this tape: names of parameters; the first mode, the time and the
-    /// state at the start, and what chooses another first mode where it is negative; and modes with
+    /// state at the start, what chooses another first mode where it is negative, and what must not
+    /// be negative for a start; and modes with
     /// slopes and rules. Only rules change the `held` last components, which have these names. All
     /// modes slide along surfaces with names.
     fn system(
         &self,
         parameters: Vec<String>,
-        start: (usize, f64, Vec<u32>, Option<(u32, usize)>),
+        start: StartRow,
         modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
         held: Vec<String>,
         surfaces: Vec<(String, u32)>,
     ) -> PyResult<FormulaSystem> {
         let mut graph = self.graph().clone();
-        let (first, time, start, otherwise) = start;
+        let (first, time, start, otherwise, required) = start;
+        let required = all_known(&graph, &required)?.into_iter();
+        let required = required.map(|formula| Condition { formula, below: false }).collect();
         let otherwise = otherwise.map(|(formula, mode)| Ok((known(&graph, formula)?, mode)));
         let otherwise = otherwise.into_iter().collect::<PyResult<_>>()?;
         let start = all_known(&graph, &start)?;
@@ -199,6 +206,7 @@ impl Tape {
             modes: read,
             first,
             otherwise,
+            required,
             start: begin,
             end,
             ..System::default()

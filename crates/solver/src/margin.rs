@@ -11,7 +11,9 @@
 //! - the condition of a transition that branches
 //!   ([`HybridSystem::transition_condition`], [`Place::Branch`])
 //!
-//! There are no others, as long as the starts of the run and all transitions are smooth. Up to the
+//! There are no others, as long as the starts of the run and all transitions are smooth. A start
+//! that exists for some parameters only is smooth under conditions ([`Place::Condition`]), which
+//! are not the system's but those of whoever starts it. Up to the
 //! first change, two runs have the same exits, and their states depend smoothly on the parameters.
 //! In the phase where they differ, a guard fires in one of them and not at nearly the same place in
 //! the other one. So a zero of that guard is not simple, or it lies at the start or the end of the
@@ -266,6 +268,7 @@ fn near_miss<M: Method, S: System>(
         Place::Exit(_) => Watch::Exit,
         Place::Branch(_) => Watch::Branch,
         Place::End => Watch::End,
+        Place::Condition => return Ok(None),
     };
     let end = match what {
         // The guard that is watched may be the one that ends the run.

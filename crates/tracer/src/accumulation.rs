@@ -40,7 +40,7 @@ impl Accumulation {
             match label {
                 Itinerary::Fires(events) => counts.push(events.len()),
                 Itinerary::Begins(_) | Itinerary::Accumulates => runs += 1,
-                Itinerary::Unfinished | Itinerary::Fails => {}
+                Itinerary::Unfinished | Itinerary::Fails | Itinerary::NoStart(_) => {}
             }
         }
         counts.sort_unstable();

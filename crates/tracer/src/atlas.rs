@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 
 use crate::doubts::Doubts;
+use crate::effort::Effort;
 use crate::family::Family;
 use crate::names::{Names, Unnamed};
 use crate::options::TraceOptions;
@@ -29,12 +30,16 @@ pub struct AtlasOptions {
     /// The greatest number of rounds, at least 1. In each round the regions are verified, and the
     /// tracer looks again where runs have other labels.
     pub rounds: usize,
+    /// The effort that was made: it sets the numbers above by [`Effort::applied`]. Only a screen
+    /// leaves a window as it is in which something is in doubt.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Effort::is_default"))]
+    pub effort: Effort,
 }
 
 impl Default for AtlasOptions {
     fn default() -> Self {
         let (trace, verify) = (TraceOptions::default(), VerifyOptions::default());
-        Self { trace, tolerance: 1e-9, verify, rounds: 8 }
+        Self { trace, tolerance: 1e-9, verify, rounds: 8, effort: Effort::Default }
     }
 }
 
@@ -115,9 +120,18 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
         labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, E>>>,
     ) -> Result<bool, SubdivisionError> {
         let sentence = |error: E| error.to_string();
+        // Regions that no curve bounds have the labels of their samples.
+        let mut samples: Vec<(Point, Label)> = Vec::new();
+        let open = self.plane.regions().iter().filter(|region| region.label.is_none());
+        let open: Vec<Point> = open.map(|region| region.sample).collect();
         let labels = |points: &[Point]| {
-            let labels = labels(points)?.into_iter();
-            Some(labels.map(|label| label.map_err(sentence)).collect())
+            let labels = labels(points)?;
+            for (point, label) in points.iter().zip(&labels) {
+                if let (true, Ok(label)) = (open.contains(point), label) {
+                    samples.push((*point, label.clone()));
+                }
+            }
+            Some(labels.into_iter().map(|label| label.map_err(sentence)).collect())
         };
         let seed = options.verify.seed.wrapping_add(self.rounds as u64 - 1);
         let points = VerifyOptions { seed, ..options.verify };
@@ -125,6 +139,8 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
             return Ok(false);
         };
         self.verification = found;
+        let known = |sample: &Point| samples.iter().find(|(point, _)| point == sample);
+        self.plane.label_rest(|sample| known(sample).map(|(_, label)| label.clone()));
         self.doubtful = doubtful(&self.plane, &self.unresolved, &self.verification);
         Ok(true)
     }

@@ -15,7 +15,7 @@ use crate::regions::verify::report::Verification;
 use crate::tracing::network::{TraceStatistics, Unresolved};
 use crate::tracing::tracer::stage::Stage;
 use crate::tracing::tracer::state::State;
-use crate::window::Window;
+use crate::window::{Point, Window};
 
 /// The name of the layout, with its version.
 pub const SCHEMA: &str = "stickslip.family-atlas/1";
@@ -178,7 +178,9 @@ impl<Label: Clone + Ord, Margin: Clone> Document<Label, Margin> {
         }
         self.options.trace.validate()?;
         let Self { window, curves, vertices, options, unresolved, verification, .. } = self;
-        let plane = Subdivision::new(window, curves, vertices, options.tolerance)?;
+        let mut plane = Subdivision::new(window, curves, vertices, options.tolerance)?;
+        let known = |sample: &Point| self.regions.iter().find(|region| region.sample == *sample);
+        plane.label_rest(|sample| known(sample)?.label.clone());
         if plane.regions() != self.regions {
             return Err(DocumentError::Regions);
         }

@@ -22,6 +22,11 @@ pub trait Problem<const N: usize, const G: usize> {
 
     /// The system at `point`, and the start of its run.
     fn at(&self, point: &Point) -> (Self::System, Start<ModeOf<Self, N, G>, N>);
+
+    /// As [`DynamicProblem::conditions`].
+    fn conditions(&self, _point: &Point) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 impl<F, S, const N: usize, const G: usize> Problem<N, G> for F
@@ -45,8 +50,20 @@ pub trait DynamicProblem {
     /// The hybrid system.
     type System: DynamicSystem;
 
-    /// The run at `point`; `None` if there is no run, which counts as a failed one.
+    /// The run at `point`; `None` if there is no run, which counts as a failed one unless a
+    /// condition says so.
     fn at(&self, point: &Point) -> Option<DynamicSetting<Self::System>>;
+
+    /// The numbers that must not be negative for a run to start, each a smooth function of the
+    /// point, and as many at every point. One that is not a number does not hold.
+    ///
+    /// They are decided in their order, so that a later one may be without value where an earlier
+    /// one does not hold. Where the first one fails that does, the label is [`Itinerary::NoStart`];
+    /// their zeros are boundaries ([`Place::Condition`]). The system need not have a run beyond
+    /// these, and the start may have a square root there.
+    fn conditions(&self, _point: &Point) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 /// A system, where its run starts, and where it ends.
@@ -85,6 +102,8 @@ pub enum Itinerary {
     Unfinished,
     /// The run fails.
     Fails,
+    /// No run starts: the place of the first condition of the start that does not hold.
+    NoStart(usize),
 }
 
 impl Itinerary {
@@ -103,7 +122,8 @@ impl Itinerary {
 ///
 /// The label of a run is its [`Itinerary`]. Margins are the solver's,
 /// [`stickslip_solver::margin::Margin`]; they are complete if the start of the run and every
-/// transition without a [condition](HybridSystem::transition_condition) are smooth.
+/// transition without a [condition](HybridSystem::transition_condition) are smooth. Where there is
+/// no start, the problem has [conditions](Problem::conditions).
 ///
 /// A run that accumulates switches or fails has no margins. Where such runs begin, the trace
 /// reports changes of the label as unresolved, with the labels on both sides; [`Self::outcome`]
@@ -146,24 +166,6 @@ where
         let run = run(self.method, &system, start, self.end, &self.options, &mut ())?;
         Ok((run.outcome, run.s))
     }
-
-    /// The outcome of the run at `point`, and the guards that fire.
-    fn run(&self, point: &Point) -> Result<(Outcome, Vec<usize>), RunError> {
-        let (system, start) = self.problem.at(point);
-        let mut fired = Fired(Vec::new());
-        let run = run(self.method, &system, start, self.end, &self.options, &mut fired)?;
-        Ok((run.outcome, fired.before(run.outcome)))
-    }
-
-    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
-        let (system, start) = self.problem.at(point);
-        margin(self.method, &system, start, self.end, &self.options, which)
-    }
-
-    fn margins(&self, point: &Point) -> Result<Margins, RunError> {
-        let (system, start) = self.problem.at(point);
-        margins(self.method, &system, start, self.end, &self.options)
-    }
 }
 
 /// The runs of a problem whose dimension is known at run time, otherwise like a [`HybridFamily`].
@@ -202,6 +204,50 @@ impl<P: DynamicProblem, M: Method> DynamicFamily<P, M> {
         let fired = fired.before(run.outcome);
         Ok(Some(DynamicFired { run, fired }))
     }
+}
+
+/// The runs of a family, whatever knows their dimension.
+trait Runs {
+    fn conditions(&self, point: &Point) -> Vec<f64>;
+    /// The outcome of the run at a point, and the guards that fire; `None` if there is no run.
+    fn fired(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError>;
+    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError>;
+    fn margins(&self, point: &Point) -> Result<Option<Margins>, RunError>;
+}
+
+impl<P: Problem<N, G>, M: Method, const N: usize, const G: usize> Runs
+    for HybridFamily<P, M, N, G>
+{
+    fn conditions(&self, point: &Point) -> Vec<f64> {
+        self.problem.conditions(point)
+    }
+
+    fn fired(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError> {
+        let (system, start) = self.problem.at(point);
+        let mut fired = Fired(Vec::new());
+        let run = run(self.method, &system, start, self.end, &self.options, &mut fired)?;
+        Ok(Some((run.outcome, fired.before(run.outcome))))
+    }
+
+    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
+        let (system, start) = self.problem.at(point);
+        margin(self.method, &system, start, self.end, &self.options, which)
+    }
+
+    fn margins(&self, point: &Point) -> Result<Option<Margins>, RunError> {
+        let (system, start) = self.problem.at(point);
+        margins(self.method, &system, start, self.end, &self.options).map(Some)
+    }
+}
+
+impl<P: DynamicProblem, M: Method> Runs for DynamicFamily<P, M> {
+    fn conditions(&self, point: &Point) -> Vec<f64> {
+        self.problem.conditions(point)
+    }
+
+    fn fired(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError> {
+        Ok(self.run(point)?.map(|it| (it.run.outcome, it.fired)))
+    }
 
     fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
         let Some(setting) = self.problem.at(point) else { return Ok(None) };
@@ -216,70 +262,69 @@ impl<P: DynamicProblem, M: Method> DynamicFamily<P, M> {
     }
 }
 
-impl<P, M, const N: usize, const G: usize> Family for HybridFamily<P, M, N, G>
-where
-    P: Problem<N, G>,
-    M: Method,
+/// The functions of a [`Family`] of runs.
+macro_rules! family_of_runs {
+    () => {
+        type Label = Itinerary;
+        type Margin = Margin;
+        type Error = FamilyError;
+
+        fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
+            label(self, point)
+        }
+
+        fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
+            if which.place == Place::Condition {
+                let value = self.conditions(point).get(which.guard).copied();
+                return Ok(value.filter(|value| value.is_finite()));
+            }
+            let found = value_of(point, self.near_miss(point, which))?.flatten();
+            Ok(found.map(|miss| miss.value))
+        }
+
+        fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
+            let found = value_of(point, self.near_miss(point, which))?.flatten();
+            Ok(found.map_or_else(|| which.clone(), |miss| miss.margin))
+        }
+
+        /// Where a phase starts or ends, the order of events may change without a change of the
+        /// itinerary: a guard that is negative from the start on fires as it would soon after.
+        fn is_sure(&self, margin: &Margin) -> bool {
+            !matches!(margin.place, Place::Start { .. } | Place::Exit(_) | Place::Branch(_))
+        }
+
+        fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+            free_run(self, point)
+        }
+    };
+}
+
+impl<P: Problem<N, G>, M: Method, const N: usize, const G: usize> Family
+    for HybridFamily<P, M, N, G>
 {
-    type Label = Itinerary;
-    type Margin = Margin;
-    type Error = FamilyError;
-
-    fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
-        label(point, self.run(point).map(Some))
-    }
-
-    fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
-        Ok(value_of(point, self.near_miss(point, which))?.flatten().map(|miss| miss.value))
-    }
-
-    fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
-        let found = value_of(point, self.near_miss(point, which))?.flatten();
-        Ok(found.map_or_else(|| which.clone(), |miss| miss.margin))
-    }
-
-    fn is_sure(&self, margin: &Margin) -> bool {
-        is_sure(margin)
-    }
-
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
-        free_run(point, self.margins(point).map(Some))
-    }
+    family_of_runs!();
 }
 
 impl<P: DynamicProblem, M: Method> Family for DynamicFamily<P, M> {
-    type Label = Itinerary;
-    type Margin = Margin;
-    type Error = FamilyError;
+    family_of_runs!();
+}
 
-    fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
-        let run = self.run(point);
-        label(point, run.map(|run| run.map(|it| (it.run.outcome, it.fired))))
-    }
-
-    fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
-        Ok(value_of(point, self.near_miss(point, which))?.flatten().map(|miss| miss.value))
-    }
-
-    fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
-        let found = value_of(point, self.near_miss(point, which))?.flatten();
-        Ok(found.map_or_else(|| which.clone(), |miss| miss.margin))
-    }
-
-    fn is_sure(&self, margin: &Margin) -> bool {
-        is_sure(margin)
-    }
-
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
-        free_run(point, self.margins(point))
-    }
+/// The margins of the conditions of a start that are decided, and the first one that does not hold.
+fn decided(conditions: &[f64]) -> (Vec<(Margin, f64)>, Option<usize>) {
+    let holds = |value: &f64| *value >= 0.0;
+    let failed = conditions.iter().position(|value| !holds(value));
+    let decided = conditions[..failed.map_or(conditions.len(), |last| last + 1)].iter();
+    let margin = |guard| Margin { exits: Vec::new(), guard, place: Place::Condition };
+    let margins = decided.enumerate().map(|(guard, &value)| (margin(guard), value));
+    (margins.filter(|(_, value)| value.is_finite()).collect(), failed)
 }
 
 /// The label of a run.
-fn label(
-    point: &Point,
-    run: Result<Option<(Outcome, Vec<usize>)>, RunError>,
-) -> Result<Itinerary, FamilyError> {
+fn label(runs: &impl Runs, point: &Point) -> Result<Itinerary, FamilyError> {
+    if let (_, Some(failed)) = decided(&runs.conditions(point)) {
+        return Ok(Itinerary::NoStart(failed));
+    }
+    let run = runs.fired(point);
     if let Err(RunError::Cycle { .. }) = run {
         return Ok(Itinerary::Accumulates);
     }
@@ -287,26 +332,21 @@ fn label(
     Ok(run.map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired)))
 }
 
-/// Where a phase starts or ends, the order of events may change without a change of the itinerary:
-/// a guard that is negative from the start on fires as it would soon after.
-fn is_sure(margin: &Margin) -> bool {
-    matches!(margin.place, Place::Minimum { .. } | Place::Maximum { .. } | Place::End)
-}
-
-/// A free run from its margins.
-fn free_run(
-    point: &Point,
-    found: Result<Option<Margins>, RunError>,
-) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+/// A free run with its margins.
+fn free_run(runs: &impl Runs, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+    let (mut margins, failed) = decided(&runs.conditions(point));
+    if let Some(failed) = failed {
+        return Ok(FreeRun { label: Itinerary::NoStart(failed), margins });
+    }
+    let found = runs.margins(point);
     if let Err(RunError::Cycle { .. }) = found {
-        return Ok(FreeRun { label: Itinerary::Accumulates, margins: Vec::new() });
+        return Ok(FreeRun { label: Itinerary::Accumulates, margins });
     }
     let Some(found) = value_of(point, found)?.flatten() else {
-        return Ok(FreeRun { label: Itinerary::Fails, margins: Vec::new() });
+        return Ok(FreeRun { label: Itinerary::Fails, margins });
     };
-    let margins = found.near_misses.into_iter().map(|miss| (miss.margin, miss.value));
-    let label = itinerary(found.outcome, found.fired);
-    Ok(FreeRun { label, margins: margins.collect() })
+    margins.extend(found.near_misses.into_iter().map(|miss| (miss.margin, miss.value)));
+    Ok(FreeRun { label: itinerary(found.outcome, found.fired), margins })
 }
 
 /// The result of a run, `None` if it failed. What is wrong in every run is an error.

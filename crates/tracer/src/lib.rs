@@ -93,6 +93,7 @@
 //! - `executor` and `watch`: threads, progress and cancellation, which the caller gives
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
+//! - `effort`: how much is done for an atlas
 //! - `draft`: what an atlas has in the places of labels and margins
 //! - `survey`: tracing and verifying in turn, until nothing is missing
 //! - `atlas` and `doubts`: the result, with all that speaks against it
@@ -109,6 +110,7 @@ mod curve;
 mod document;
 mod doubts;
 mod draft;
+mod effort;
 mod executor;
 mod family;
 mod hybrid;
@@ -132,6 +134,7 @@ pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use document::{Document, DocumentError, SCHEMA};
 pub use doubts::Doubts;
 pub use draft::Draft;
+pub use effort::Effort;
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
 pub use hybrid::{

@@ -126,6 +126,8 @@ impl Names<Itinerary, Margin> for RunNames {
             Itinerary::Accumulates => "accumulates".to_owned(),
             Itinerary::Unfinished => "unfinished".to_owned(),
             Itinerary::Fails => "fails".to_owned(),
+            Itinerary::NoStart(0) => "no start".to_owned(),
+            Itinerary::NoStart(failed) => format!("no start, by condition {}", failed + 1),
         }
     }
 
@@ -136,6 +138,7 @@ impl Names<Itinerary, Margin> for RunNames {
             Itinerary::Begins(guards) => format!("{}+", guards.len()),
             Itinerary::Accumulates => "∞".to_owned(),
             Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+            Itinerary::NoStart(_) => "none".to_owned(),
         }
     }
 
@@ -146,6 +149,7 @@ impl Names<Itinerary, Margin> for RunNames {
             Place::Exit(_) => "order",
             Place::Start { .. } => "event-at-start",
             Place::Branch(_) => "branch",
+            Place::Condition => "condition",
         }
     }
 }

@@ -60,6 +60,9 @@ impl Default for TraceOptions {
 }
 
 impl TraceOptions {
+    /// The greatest number of cells along an axis.
+    pub(crate) const MOST_CELLS: usize = 4096;
+
     /// Checks every field.
     ///
     /// # Errors
@@ -103,7 +106,8 @@ impl TraceOptions {
             "0 to 1e-2",
             (0.0..=1e-2).contains(&self.beyond),
         )?;
-        InvalidValue::check("cells", self.cells, "2 to 4096", (2..=4096).contains(&self.cells))?;
+        let cells = (2..=Self::MOST_CELLS).contains(&self.cells);
+        InvalidValue::check("cells", self.cells, "2 to 4096", cells)?;
         InvalidValue::check("max_nodes", self.max_nodes, "at least 2", self.max_nodes >= 2)?;
         InvalidValue::check("max_curves", self.max_curves, "at least 1", self.max_curves >= 1)
     }
@@ -142,6 +146,10 @@ pub enum TraceError<E: std::error::Error + 'static> {
         /// The greatest number of curves, [`TraceOptions::max_curves`].
         most: usize,
     },
+    /// The watch of a search has cancelled it. A [`Surveyor`](crate::Surveyor) returns what was
+    /// found so far in the place of this.
+    #[error("the search was cancelled")]
+    Cancelled,
     /// A margin is not a number.
     #[error("a margin at ({}, {}) is not a number", point.x, point.y)]
     NotANumber {

@@ -2,6 +2,7 @@
 
 use crate::atlas::{Atlas, AtlasOf, AtlasOptions};
 use crate::draft::{Draft, Own};
+use crate::effort::Effort;
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::{TraceError, TraceOptions};
@@ -11,7 +12,7 @@ use crate::tracing::margins::Lines;
 use crate::tracing::network::NetworkOf;
 use crate::tracing::tracer::Tracer;
 use crate::tracing::tracer::state::State;
-use crate::watch::Watch;
+use crate::watch::{Progress, Watch};
 use crate::window::{Point, Window};
 
 /// Makes atlases on the threads of the caller, who sees the progress and can cancel.
@@ -89,7 +90,7 @@ impl<T> Survey<T> {
 pub type DraftedOf<D> = Atlas<<D as Draft>::Label, <D as Draft>::Margin>;
 
 /// An atlas, with the zero sets if it was traced by margins.
-type Finished<'f, 'w, D> = (DraftedOf<D>, Option<Lines<'f, 'w, <D as Draft>::Family>>);
+type Finished<'f, D> = (DraftedOf<D>, Option<Lines<'f, <D as Draft>::Family>>);
 
 /// Why there is no atlas of a draft.
 type DraftError<D> = TraceError<<<D as Draft>::Family as Family>::Error>;
@@ -132,9 +133,24 @@ impl<'w, E> Surveyor<'w, E> {
     where
         E: Executor<F>,
     {
-        let mut tracer = Tracer::new(family, window, &self.options.trace)?;
-        tracer.require_few(&self.executor, &self.watch)?;
+        let mut tracer = self.tracer(family, window)?;
         Ok(self.finish(&Own(family), &mut tracer, Survey::BEGINNING)?.0)
+    }
+
+    /// A tracer of a window with few enough curves.
+    fn tracer<'f, F: Family>(
+        &self,
+        family: &'f F,
+        window: &Window,
+    ) -> Result<Tracer<'f, F>, TraceError<F::Error>>
+    where
+        E: Executor<F>,
+        'w: 'f,
+    {
+        let tracer = Tracer::new(family, window, &self.options.trace)?.watched(self.watch);
+        self.watch.report(Progress::Now { what: "counting boundaries" });
+        tracer.require_few(&self.executor, &self.watch)?;
+        Ok(tracer)
     }
 
     /// As [`Self::atlas`], for an atlas with other labels and margins than the family's, and other
@@ -154,8 +170,7 @@ impl<'w, E> Surveyor<'w, E> {
     {
         let traced = |trace: TraceOptions| {
             let surveyor = Surveyor { options: AtlasOptions { trace, ..self.options }, ..*self };
-            let mut tracer = Tracer::new(draft.family(), window, &trace)?;
-            tracer.require_few(&surveyor.executor, &surveyor.watch)?;
+            let mut tracer = surveyor.tracer(draft.family(), window)?;
             let (atlas, lines) = surveyor.finish(draft, &mut tracer, Survey::BEGINNING)?;
             let extrema = match lines {
                 Some(lines) => lines.extrema()?,
@@ -165,7 +180,7 @@ impl<'w, E> Surveyor<'w, E> {
         };
         let first: Result<_, DraftError<D>> = traced(self.options.trace);
         let first = first?;
-        if first.0.agrees() {
+        if first.0.agrees() || self.options.effort == Effort::Screen {
             return Ok(first);
         }
         for trace in draft.other_options(&self.options.trace) {
@@ -199,7 +214,8 @@ impl<'w, E> Surveyor<'w, E> {
         let (round, window) = (atlas.rounds, *atlas.plane.window());
         let finished = unfinished.surveyed;
         let result = (finished || unfinished.brackets.is_some()).then_some(atlas);
-        let mut tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
+        let tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
+        let mut tracer = tracer.watched(self.watch);
         Ok(self.finish(&Own(family), &mut tracer, Survey { result, round, finished })?.0)
     }
 
@@ -216,9 +232,10 @@ impl<'w, E> Surveyor<'w, E> {
         draft: &'f D,
         tracer: &mut Tracer<'_, D::Family>,
         begun: Survey<DraftedOf<D>>,
-    ) -> Result<Finished<'f, 'w, D>, DraftError<D>>
+    ) -> Result<Finished<'f, D>, DraftError<D>>
     where
         E: Executor<D::Family>,
+        'w: 'f,
     {
         let begun = if begun.finished { begun } else { self.survey(draft, tracer, begun)? };
         let Survey { result, round, finished } = begun;
@@ -227,14 +244,14 @@ impl<'w, E> Surveyor<'w, E> {
             None => self.unverified(draft, tracer.network(), round)?.0,
         };
         let mut surveyed = false;
-        if finished && !atlas.agrees() {
+        if finished && !atlas.agrees() && self.options.effort != Effort::Screen {
             match self.by_margins(draft, &tracer.window()) {
-                Ok(Some((other, Some(lines)))) if other.agrees() && !lines.have_cusps() => {
+                Ok((other, Some(lines))) if other.agrees() && !lines.have_cusps() => {
                     return Ok((other, Some(lines)));
                 }
+                Err(TraceError::Cancelled) => surveyed = true,
                 // Runs may fail where the first way had nothing to look for.
-                Ok(Some(_)) | Err(_) => {}
-                Ok(None) => surveyed = true,
+                Ok(_) | Err(_) => {}
             }
         }
         if surveyed || !finished {
@@ -255,34 +272,29 @@ impl<'w, E> Surveyor<'w, E> {
     }
 
     /// The atlas of the zero sets of margins, which are searched for again where the verification
-    /// finds that one is missing. `None` if the watch cancels.
+    /// finds that one is missing.
     fn by_margins<'f, D: Draft>(
         &self,
         draft: &'f D,
         window: &Window,
-    ) -> Result<Option<Finished<'f, 'w, D>>, DraftError<D>>
+    ) -> Result<Finished<'f, D>, DraftError<D>>
     where
         E: Executor<D::Family>,
+        'w: 'f,
     {
         let mut lines = Lines::new(draft.family(), window, &self.options.trace, self.watch)?;
-        if !lines.explore(&self.executor)? {
-            return Ok(None);
-        }
+        lines.explore(&self.executor)?;
         let mut round = 1;
         loop {
             let (mut atlas, options) = self.unverified(draft, lines.network()?, round)?;
             if !self.verify(draft, &mut atlas, &options)? {
-                return Ok(None);
+                return Err(TraceError::Cancelled);
             }
             let brackets = atlas.verification.brackets();
-            if brackets.is_empty() || round >= self.options.rounds {
-                return Ok(Some((atlas, Some(lines))));
+            if brackets.is_empty() || round >= self.options.rounds || !lines.look(&brackets)? {
+                return Ok((atlas, Some(lines)));
             }
-            match lines.look(&brackets)? {
-                None => return Ok(None),
-                Some(false) => return Ok(Some((atlas, Some(lines)))),
-                Some(true) => round += 1,
-            }
+            round += 1;
         }
     }
 
@@ -308,6 +320,7 @@ impl<'w, E> Surveyor<'w, E> {
     where
         E: Executor<D::Family>,
     {
+        self.watch.report(Progress::Now { what: "comparing regions with runs" });
         let labels = |portion: &[Point]| draft.checks(&self.executor, portion);
         atlas.verify(options, |points: &[Point]| self.watch.in_portions(points, labels))
     }
@@ -329,7 +342,7 @@ impl<'w, E> Surveyor<'w, E> {
         let mut last = tracer.places_to_look().unwrap_or(usize::MAX / GROWTH[1]);
         loop {
             let (looks_again, before) = (tracer.looks_again(), tracer.curve_count());
-            if !tracer.proceed(&self.executor, &self.watch)? {
+            if !tracer.proceed(&self.executor)? {
                 return Ok(Survey { result, round, finished: false });
             }
             if looks_again {

@@ -1,5 +1,7 @@
 //! What a caller sees of a long computation, and how it cancels one.
 
+use std::time::{Duration, Instant};
+
 use crate::window::Point;
 
 /// What a computation reports while it runs, from any thread and in any order.
@@ -14,6 +16,11 @@ pub enum Progress {
     Advance {
         /// The number of steps since the last report.
         steps: usize,
+    },
+    /// What is done from now on.
+    Now {
+        /// It, in words such as "comparing regions with runs".
+        what: &'static str,
     },
 }
 
@@ -35,12 +42,14 @@ impl Watch<'static> {
 }
 
 impl<'a> Watch<'a> {
-    /// The number of points between two calls of `cancelled`.
-    const PORTION: usize = 32;
+    /// The number of points of the first portion, and the most of any.
+    const PORTIONS: [usize; 2] = [32, 4096];
+    /// How long a portion should take: between two portions, `cancelled` is called.
+    const PORTION: Duration = Duration::from_millis(20);
 
     /// The same watch, which cancels when `cancelled` returns `true`; from then on it should always
-    /// do so. It is called between tasks, which are short: one search along an edge of the grid,
-    /// around a vertex, or some tens of runs.
+    /// do so. It is called after each run by which boundaries are followed, and every 20 ms where
+    /// many runs are computed at once, so that a computation ends as soon as a run does.
     #[must_use]
     pub fn cancelled_by(self, cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { cancelled, ..self }
@@ -70,13 +79,19 @@ impl<'a> Watch<'a> {
         mut compute: impl FnMut(&[Point]) -> Vec<T>,
     ) -> Option<Vec<T>> {
         self.report(Progress::Begin { steps: points.len() });
+        let [mut size, most] = Self::PORTIONS;
         let mut results = Vec::with_capacity(points.len());
-        for portion in points.chunks(Self::PORTION) {
+        while results.len() < points.len() {
             if self.is_cancelled() {
                 return None;
             }
+            let (begun, left) = (Instant::now(), &points[results.len()..]);
+            let portion = &left[..size.min(left.len())];
             results.extend(compute(portion));
             self.report(Progress::Advance { steps: portion.len() });
+            // Only when others hear of it depends on the time.
+            size = if begun.elapsed() > Self::PORTION { size / 2 } else { 2 * size };
+            size = size.clamp(1, most);
         }
         Some(results)
     }

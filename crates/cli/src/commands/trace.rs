@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stickslip_figure::pictures;
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::reduced;
@@ -13,7 +14,7 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, AtlasDocument, CollisionAtlas, Frame, geojson};
 use stickslip_plane::gaining;
 use stickslip_plane::progress::InParallel;
-use stickslip_tracer::{Surveyor, Watch};
+use stickslip_tracer::{Effort, Surveyor, Watch};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver};
@@ -61,6 +62,11 @@ pub struct TraceArguments {
     #[arg(value_parser = number::parse_option)]
     pub tolerance: Option<f64>,
 
+    /// How much is done, as the atlas says too
+    #[arg(long, value_name = "EFFORT", help_heading = "Collisions", default_value = "default")]
+    #[arg(value_parser = effort())]
+    pub effort: Effort,
+
     /// JSON file for the atlas
     #[arg(long, value_name = "ATLAS.json", help_heading = "Output")]
     pub out: PathBuf,
@@ -98,7 +104,7 @@ pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
 
 /// Traces the boundaries of collisions.
 fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
-    let TraceArguments { out, plot, geojson: map, gaining: lines, .. } = arguments;
+    let TraceArguments { out, plot, geojson: map, gaining: lines, effort, .. } = arguments;
     let frame = frame(arguments)?;
     let tolerance = arguments.tolerance.unwrap_or_else(|| frame.tolerances().usual);
     let plot = plot.as_ref();
@@ -115,8 +121,10 @@ fn collisions(arguments: &TraceArguments) -> Result<(), Failure> {
     let gaining_file = lines.as_deref().map(OutputFile::create).transpose()?;
 
     let (verified, gained) = arguments.threads.with_steps(|report| {
-        let verified = atlas::trace(frame, tolerance, report);
-        let gained = gaining_file.is_some().then(|| gaining::trace(frame, tolerance, report));
+        let verified = atlas::trace_with(frame, tolerance, *effort, report);
+        let gained = gaining_file
+            .is_some()
+            .then(|| gaining::trace_with(frame, tolerance, *effort, report.into()));
         (verified, gained)
     })?;
     let (verified, gained) = (verified?, gained.transpose()?);
@@ -144,7 +152,36 @@ fn found(CollisionAtlas { regions, report, .. }: &CollisionAtlas) -> String {
     let all = boundaries_and_regions(regions.curves().len(), regions.regions().len());
     let points = report.tried;
     let verified = if report.agrees { "verified" } else { "not all confirmed" };
-    format!("{all}, {verified} at {points} points")
+    format!("{all}, {verified} at {points} points{}", with(report.effort))
+}
+
+/// Another effort than the usual one, in a sentence.
+fn with(effort: Effort) -> &'static str {
+    match effort {
+        Effort::Screen => ", by a first look alone",
+        Effort::Default => "",
+        Effort::Certain => ", with more effort",
+    }
+}
+
+/// Reads an effort.
+fn effort() -> impl TypedValueParser<Value = Effort> {
+    let value = |effort: Effort| {
+        let help = match effort {
+            Effort::Screen => {
+                "A first look: half as fine a grid, a fortieth of the random runs that verify, a \
+                 fifth of those beside boundaries, and no second look"
+            }
+            Effort::Default => "20 000 random collisions, or 10 000 runs of a system",
+            Effort::Certain => {
+                "Twice as fine a grid, five times as many runs that verify, twice as many rounds"
+            }
+        };
+        PossibleValue::new(effort.name()).help(help)
+    };
+    let known = |text: String| Effort::ALL.into_iter().find(|effort| effort.name() == text);
+    let values = PossibleValuesParser::new(Effort::ALL.map(value));
+    values.map(move |text| known(text).unwrap_or_default())
 }
 
 /// How many there are.
@@ -172,11 +209,11 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
 
 /// Traces the boundaries of a system of one's own.
 fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> {
-    let TraceArguments { out, plot, tolerance, threads, .. } = arguments;
+    let TraceArguments { out, plot, tolerance, threads, effort, .. } = arguments;
     let plot = plot.as_ref();
     let system = ("the system", arguments.plane.system.as_deref());
     require_different(&[("--out", Some(out)), plotted(plot)], &[system])?;
-    let options = plane.atlas_options(*tolerance)?;
+    let options = effort.applied(plane.atlas_options(*tolerance)?);
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = OutputFile::create(out)?;
     let family = plane.family_of_atlas(arguments.plane.max_events, &[]);
@@ -191,7 +228,7 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
         stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.names)))?);
     }
     let found = boundaries_and_regions(atlas.plane.curves().len(), atlas.plane.regions().len());
-    deliver(stored, found)?;
+    deliver(stored, found + with(*effort))?;
     let objection = atlas.doubts(&plane.names).map(|doubts| doubts.objection());
     Failure::if_doubtful(out, "atlas is", objection)
 }

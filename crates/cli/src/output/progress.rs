@@ -25,7 +25,7 @@ pub struct Bar {
 impl Bar {
     /// A bar that counts the steps of a computation.
     pub fn steps() -> Self {
-        Self::new(None, "{bar:25} {percent}%, {eta} left")
+        Self::new(None, "{bar:25} {percent}%, {eta} left  {msg}")
     }
 
     /// A bar that counts the bytes of an input of `length` bytes, if that is known.
@@ -73,6 +73,7 @@ impl Bar {
                 self.bar.set_length(self.bar.length().unwrap_or(0) + steps as u64);
             }
             Progress::Advance { steps } => self.advance(steps),
+            Progress::Now { what } => self.bar.set_message(what),
         }
     }
 }
@@ -105,9 +106,15 @@ fn line(bar: &ProgressBar) -> String {
         Some(length) if length > 0 => {
             format!("{:.0} %", 100.0 * bar.position() as f64 / length as f64)
         }
+        // A computation that has said what it does, and not how long it is.
+        _ if !bar.message().is_empty() => "0 %".to_owned(),
         _ => format!("{} bytes", bar.position()),
     };
-    format!("progress: {part} after {minutes} min")
+    let doing = match bar.message() {
+        doing if doing.is_empty() => doing,
+        doing => format!(", {doing}"),
+    };
+    format!("progress: {part} after {minutes} min{doing}")
 }
 
 #[cfg(test)]
@@ -116,13 +123,15 @@ mod tests {
 
     #[test]
     fn lines_come_until_the_end() {
+        const SAID: &str = "progress: 25 % after 0 min, searching along the grid";
         let (said, heard) = mpsc::channel();
         let bar = ProgressBar::with_draw_target(Some(8), ProgressDrawTarget::hidden());
         bar.inc(2);
+        bar.set_message("searching along the grid");
         let keep = lines(bar, Duration::from_millis(1), move |line| said.send(line).unwrap());
-        assert_eq!(heard.recv().unwrap(), "progress: 25 % after 0 min");
+        assert_eq!(heard.recv().unwrap(), SAID);
         drop(keep);
         // The thread ends, and with it its side of the channel.
-        assert!(heard.iter().all(|line| line == "progress: 25 % after 0 min"));
+        assert!(heard.iter().all(|line| line == SAID));
     }
 }

@@ -46,7 +46,7 @@ pub fn format(text: &str) -> Result<String, TextError> {
         let second = words.get(1).map(|it| &it.token);
         match first {
             Some(Token::Name("mode")) => (in_mode, in_rule) = (true, false),
-            Some(Token::Name("parameter" | "state" | "discrete" | "start")) => {
+            Some(Token::Name("parameter" | "state" | "discrete" | "start" | "requires")) => {
                 (in_mode, in_rule) = (false, false);
             }
             Some(Token::Name("end")) if second == Some(&Token::Sign("=")) => {

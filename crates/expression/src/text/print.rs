@@ -109,8 +109,8 @@ impl<'a> Printer<'a> {
         let system = self.system;
         let (roots, graph) = (system.moving_formulas(), &system.graph);
         let bounds = system.fixed_formulas();
-        let in_modes = graph.needed(&roots);
-        let needed = graph.needed(&[&roots[..], &bounds[..]].concat());
+        let roots = [&roots[..], &bounds[..]].concat();
+        let needed = graph.needed(&roots);
         let mut uses = vec![0_usize; needed.len()];
         for root in &roots {
             uses[root.index()] += 1;
@@ -135,7 +135,7 @@ impl<'a> Printer<'a> {
             let leaf = matches!(node, Node::Constant(_) | Node::Variable(_));
             let shared = uses[index] > 1 && printed.text.chars().count() > LONGEST;
             let name = names.remove(&index);
-            if !leaf && in_modes[index] && (name.is_some() || shared || printed.depth > DEEPEST) {
+            if !leaf && (name.is_some() || shared || printed.depth > DEEPEST) {
                 let name = name.or_else(|| fresh.next()).unwrap_or_default();
                 // Writing to a string does not fail.
                 let _ = writeln!(lines, "{name} = {}", printed.text);
@@ -264,6 +264,10 @@ impl<'a> Printer<'a> {
             }
         }
         writeln!(text)?;
+        for condition in &system.required {
+            let sign = if condition.below { "<" } else { ">=" };
+            writeln!(text, "requires {} {sign} 0", sum(condition.formula))?;
+        }
         if let Some(first) = system.modes.get(system.first) {
             match system.otherwise.first() {
                 Some(&(formula, other)) => {

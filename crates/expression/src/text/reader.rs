@@ -10,10 +10,10 @@ use crate::system::System;
 
 /// Words that no name may be.
 #[rustfmt::skip]
-pub(super) const RESERVED: [&str; 27] = [
+pub(super) const RESERVED: [&str; 28] = [
     "parameter", "state", "discrete", "mode", "when", "at", "every", "from", "start", "in", "end",
     "if", "then", "else", "and", "or", "not", "rises", "falls", "crosses", "through", "priority",
-    "jumps", "sliding", "on", "t", "pi",
+    "jumps", "sliding", "on", "requires", "t", "pi",
 ];
 
 /// The tokens of a statement, without the end of its line.
@@ -32,6 +32,8 @@ pub(super) struct Reader<'a> {
     pub(super) formulas: HashMap<&'a str, Formula>,
     /// The derivatives of components, in the mode that is read.
     pub(super) slopes: Vec<Option<Formula>>,
+    /// Where the formulas of components at the start are.
+    pub(super) starts: Vec<usize>,
     /// Whether a rule is read.
     pub(super) in_rule: bool,
     /// Along what each mode slides, and the tokens that say so.

@@ -6,8 +6,8 @@ use super::formula::{Truth, is_function};
 use super::reader::{RESERVED, Reader, Statement};
 use super::tokens::{Token, tokens};
 use super::{TextError, names};
-use crate::graph::{Binary, Formula, Unary, Variable};
-use crate::system::{Component, Mode, Parameter, Rule, System};
+use crate::graph::{Binary, Formula, Node, Unary, Variable};
+use crate::system::{Component, Condition, Mode, Parameter, Rule, System};
 
 /// The slopes of all modes together have at most as many entries.
 const MOST_SLOPES: usize = 10_000_000;
@@ -49,6 +49,7 @@ impl System {
             system: Self::default(),
             formulas: HashMap::new(),
             slopes: Vec::new(),
+            starts: Vec::new(),
             in_rule: false,
             surfaces: Vec::new(),
             by_mode: HashMap::new(),
@@ -107,7 +108,7 @@ impl<'a> Reader<'a> {
                     }
                     sections.push(Section { name, statements: Vec::new() });
                 }
-                Token::Name("start") => ends.push(statement),
+                Token::Name("start" | "requires") => ends.push(statement),
                 Token::Name("when" | "at" | "every" | "rest" | "sliding") => {
                     let last = sections.len() - 1;
                     sections[last].statements.push(statement);
@@ -118,6 +119,7 @@ impl<'a> Reader<'a> {
                 Token::Name(name) => {
                     let words = ["parameter", "state", "discrete", "mode", "start", "when", "at"];
                     let words = words.into_iter().chain(["every", "end", "rest", "sliding"]);
+                    let words = words.chain(["requires"]);
                     let hint = names::hint(name, words);
                     let message = format!(
                         "`{name}` begins no statement{hint}; expected a word such as `state` or \
@@ -156,19 +158,20 @@ impl<'a> Reader<'a> {
             self.free(name, at)?;
             self.expect("=")?;
             let from = self.next;
-            let formula = self.number()?;
             let variable = if kind == "parameter" {
+                let formula = self.number()?;
                 let value = self.constant(formula, from)?;
                 let range = self.range(value)?;
                 let index = short(self.system.parameters.len());
                 self.system.parameters.push(Parameter { name: name.to_owned(), value, range });
                 Variable::Parameter(index)
             } else {
-                self.parameters_alone(formula, from)?;
+                self.skip_formula();
                 let index = self.system.components.len();
                 let discrete = kind == "discrete";
-                let component = Component { name: name.to_owned(), start: formula, discrete };
-                self.system.components.push(component);
+                let start = self.system.graph.constant(0.0);
+                self.system.components.push(Component { name: name.to_owned(), start, discrete });
+                self.starts.push(from);
                 let zero = self.system.graph.constant(0.0);
                 self.slopes.push(discrete.then_some(zero));
                 self.components.insert(name, index);
@@ -180,6 +183,35 @@ impl<'a> Reader<'a> {
                 return self.expect_end();
             }
         }
+    }
+
+    /// Goes to the end of a formula, which is read later.
+    fn skip_formula(&mut self) {
+        let mut depth = 0_usize;
+        loop {
+            match self.peek() {
+                Token::End => return,
+                Token::Sign(",") if depth == 0 => return,
+                Token::Sign("(") => depth += 1,
+                Token::Sign(")") => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            self.next += 1;
+        }
+    }
+
+    /// Reads what components are at the start. Names may stand there for formulas of parameters.
+    fn starts(&mut self) -> Result<(), TextError> {
+        for (component, from) in std::mem::take(&mut self.starts).into_iter().enumerate() {
+            self.next = from;
+            let start = self.number()?;
+            self.parameters_alone(start, from)?;
+            if !matches!(self.peek(), Token::Sign(",")) {
+                self.expect_end()?;
+            }
+            self.system.components[component].start = start;
+        }
+        Ok(())
     }
 
     fn range(&mut self, value: f64) -> Result<Option<(f64, f64)>, TextError> {
@@ -276,6 +308,7 @@ impl<'a> Reader<'a> {
             }
             after_rule = false;
         }
+        self.starts()?;
         let common = self.slopes.clone();
         for mut section in sections.drain(1..) {
             self.slopes.clone_from(&common);
@@ -426,6 +459,46 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// `requires condition, condition`
+    fn requirements(&mut self) -> Result<(), TextError> {
+        loop {
+            let at = self.next;
+            let (formula, below) = match self.truth()? {
+                Truth::Negative(formula) => (formula, true),
+                Truth::NotNegative(formula) => (formula, false),
+            };
+            self.parameters_alone(formula, at)?;
+            if self.system.graph.reads(&[formula]).is_empty() {
+                let message = "the condition never changes; expected one with a parameter";
+                return Err(self.error_at(at, message.to_owned()));
+            }
+            self.require(Condition { formula, below });
+            if !self.takes(",") {
+                return self.expect_end();
+            }
+        }
+    }
+
+    /// Adds a condition, as several if it holds where all of several do: their common boundary has
+    /// corners.
+    fn require(&mut self, condition: Condition) {
+        let Condition { formula, below } = condition;
+        let joint = if below { Binary::Max } else { Binary::Min };
+        let graph = &self.system.graph;
+        let is = |formula, number: f64| graph.value(formula) == Some(number);
+        match graph.node(formula) {
+            Node::Binary(function, a, b) if function == joint => {
+                self.require(Condition { formula: a, below });
+                self.require(Condition { formula: b, below });
+            }
+            // What is 0 or above, beside what is negative.
+            Node::Select(formula, yes, no) if below && is(yes, -1.0) && is(no, 1.0) => {
+                self.require(Condition { formula, below: false });
+            }
+            _ => self.system.required.push(condition),
+        }
+    }
+
     /// `start in mode at 0`, `start if condition in one else other`, `end = 10`.
     fn bound(&mut self) -> Result<(), TextError> {
         if self.takes_word("end") {
@@ -434,6 +507,8 @@ impl<'a> Reader<'a> {
             let end = self.number()?;
             self.parameters_alone(end, at)?;
             self.system.end = Some(end);
+        } else if self.takes_word("requires") {
+            return self.requirements();
         } else {
             self.next += 1;
             let at = self.next;

@@ -5,6 +5,7 @@ mod checks;
 mod examples;
 mod formulas;
 mod mistakes;
+mod requires;
 mod sensitivities;
 mod sliding;
 mod surfaces;

@@ -100,7 +100,7 @@ pub const PLACES: [(&[&str], &str, Stroke); 4] = [
     (&["end"], "event at the end", BOUNDARY_END),
     (&["minimum", "maximum"], "graze", BOUNDARY_STICK),
     (&["exit"], "order of events", BOUNDARY_SLIP),
-    (&["start", "branch"], "start or branch", BOUNDARY_START),
+    (&["start", "branch", "condition"], "start or branch", BOUNDARY_START),
 ];
 
 /// The kind of a boundary on which `margin` vanishes, as an index of [`PLACES`].
@@ -109,7 +109,7 @@ pub fn place(margin: &Margin) -> usize {
         Place::End => 0,
         Place::Minimum { .. } | Place::Maximum { .. } => 1,
         Place::Exit(_) => 2,
-        Place::Start { .. } | Place::Branch(_) => 3,
+        Place::Start { .. } | Place::Branch(_) | Place::Condition => 3,
     }
 }
 

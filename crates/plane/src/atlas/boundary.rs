@@ -47,7 +47,7 @@ impl BoundaryKind {
         match (margin.place, phases.last()) {
             (Place::End, _) => Self::EndOfContact,
             (Place::Start { .. }, _) => Self::StartOfContact,
-            (Place::Branch(_) | Place::Exit(_), _) => Self::StartOfTail,
+            (Place::Branch(_) | Place::Exit(_) | Place::Condition, _) => Self::StartOfTail,
             (_, Some(Mode { regime: Regime::Slip, .. })) => Self::SlipGraze,
             _ => Self::StickGraze,
         }

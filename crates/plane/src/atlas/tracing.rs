@@ -1,7 +1,9 @@
 //! How an atlas is made: boundaries are traced, and regions are verified.
 
 use stickslip_model::Collider;
-use stickslip_tracer::{AtlasOptions, Point, Surveyor, TraceOptions, VerifyOptions, Window};
+use stickslip_tracer::{
+    AtlasOptions, Effort, Point, Surveyor, TraceOptions, VerifyOptions, Window,
+};
 
 use super::draft::{CollisionDraft, integrated, room_beyond};
 use super::error::AtlasError;
@@ -22,7 +24,21 @@ pub fn trace<'w>(
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
 ) -> Result<CollisionAtlas, AtlasError> {
-    Ok(CollisionAtlas { ratio: frame.ratio, ..divide(&frame.plane()?, tolerance, watch)? })
+    trace_with(frame, tolerance, Effort::Default, watch)
+}
+
+/// As [`trace`], with another effort, which the report names.
+///
+/// # Errors
+/// As [`divide`].
+pub fn trace_with<'w>(
+    frame: Frame,
+    tolerance: f64,
+    effort: Effort,
+    watch: impl Into<Watch<'w>>,
+) -> Result<CollisionAtlas, AtlasError> {
+    let divided = divide_watched(&frame.plane()?, tolerance, effort, watch.into())?;
+    Ok(CollisionAtlas { ratio: frame.ratio, ..divided })
 }
 
 /// Traces the boundaries in the window of a plane, accurate to `tolerance` in its second parameter,
@@ -58,7 +74,7 @@ pub fn divide<'w>(
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
 ) -> Result<CollisionAtlas, AtlasError> {
-    divide_watched(plane, tolerance, watch.into())
+    divide_watched(plane, tolerance, Effort::Default, watch.into())
 }
 
 /// [`divide`], compiled once, in this crate: what is generic is compiled in every crate that calls
@@ -66,19 +82,20 @@ pub fn divide<'w>(
 fn divide_watched(
     plane: &CollisionPlane,
     tolerance: f64,
+    effort: Effort,
     watch: Watch<'_>,
 ) -> Result<CollisionAtlas, AtlasError> {
     require_traceable(plane, tolerance)?;
-    let options = AtlasOptions {
+    let options = effort.applied(AtlasOptions {
         trace: trace_options(plane, tolerance),
         verify: VerifyOptions { random_points: 20_000, ..VerifyOptions::default() },
         ..AtlasOptions::default()
-    };
+    });
     let surveyor = Surveyor { options, executor: InParallel, watch };
     let draft = CollisionDraft::new(plane, tolerance)?;
     let drawn = surveyor.draw(&draft, &plane.window());
     let (drawn, extrema) = drawn.map_err(|error| AtlasError::of(plane, error))?;
-    let report = VerificationReport::new(plane, &options.verify, &drawn);
+    let report = VerificationReport::new(plane, &options, &drawn);
     let mut regions = drawn.plane;
     regions.label_rest(|sample| integrated(plane, sample).ok());
     Ok(CollisionAtlas { plane: *plane, ratio: None, tolerance, regions, extrema, report })

@@ -1,6 +1,6 @@
 //! What the comparison of an atlas with collisions found.
 
-use stickslip_tracer::{Atlas, Doubts, Origin, Verification, VerifyOptions};
+use stickslip_tracer::{Atlas, AtlasOptions, Doubts, Effort, Origin, Verification};
 
 use super::boundary::BoundaryKind;
 use crate::family::CollisionPlane;
@@ -13,6 +13,9 @@ pub struct VerificationReport {
     pub agrees: bool,
     /// The method that computed the collisions.
     pub method: String,
+    /// How much was done.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Effort::is_default"))]
+    pub effort: Effort,
     /// The counts of Euler's formula.
     pub euler: EulerFields,
     /// Number of random points in the window.
@@ -75,7 +78,7 @@ impl VerificationReport {
     /// The report of an atlas that was verified with these options.
     pub(super) fn new(
         plane: &CollisionPlane,
-        options: &VerifyOptions,
+        options: &AtlasOptions,
         atlas: &Atlas<String, BoundaryKind>,
     ) -> Self {
         let doubts = atlas.doubts(plane).unwrap_or_default();
@@ -97,6 +100,7 @@ impl VerificationReport {
         Self {
             agrees: atlas.agrees(),
             method: "dop853".to_owned(),
+            effort: options.effort,
             euler: EulerFields {
                 vertices: euler.vertices,
                 edges: euler.edges,
@@ -104,8 +108,8 @@ impl VerificationReport {
                 components: euler.components,
                 holds: euler.holds(),
             },
-            random_points: options.random_points,
-            near_points: options.near_points,
+            random_points: options.verify.random_points,
+            near_points: options.verify.near_points,
             tried: tried.iter().sum(),
             undecided: unverified.len() - atlas.verification.failed().count(),
             mismatches: mismatches.collect(),

@@ -1,7 +1,9 @@
-//! Collisions of a family with one more boundary: where |ε_t| is 1.
+//! Collisions of a family with one boundary: where |ε_t| is 1.
 //!
 //! ε_t is continuous, but has kinks where the itinerary changes. With the itinerary prescribed it
-//! is smooth, so that the boundary has another margin for each itinerary.
+//! is smooth, so that the boundary has another margin for each itinerary, and a vertex where the
+//! itinerary changes. Labels do not tell itineraries: whatever these do, the regions are those of
+//! |ε_t|.
 
 use stickslip_model::CollisionError;
 use stickslip_model::general::CREST;
@@ -17,7 +19,7 @@ const FORWARD: usize = BEYOND_GUARDS;
 /// What stands for a guard in the margin 1 + ε_t.
 const BACKWARD: usize = BEYOND_GUARDS + 1;
 
-/// Collisions with any law, with labels that say whether |ε_t| is above 1.
+/// Collisions with any law, with labels that say whether |ε_t| is above 1, and nothing else.
 #[derive(Clone, Copy, Debug)]
 pub struct GainingFamily(GeneralFamily);
 
@@ -53,10 +55,10 @@ fn is_level(margin: &Margin) -> bool {
     level(margin).is_some()
 }
 
-fn with_level(mut label: CollisionLabel, eps_t: f64) -> CollisionLabel {
-    label.extend((eps_t > 1.0).then_some(CollisionEvent::GainsForward));
-    label.extend((eps_t < -1.0).then_some(CollisionEvent::GainsBackward));
-    label
+fn labelled(eps_t: f64) -> CollisionLabel {
+    let forward = (eps_t > 1.0).then_some(CollisionEvent::GainsForward);
+    let backward = (eps_t < -1.0).then_some(CollisionEvent::GainsBackward);
+    forward.into_iter().chain(backward).collect()
 }
 
 impl Family for GainingFamily {
@@ -66,7 +68,7 @@ impl Family for GainingFamily {
 
     fn label(&self, point: &Point) -> Result<CollisionLabel, CollisionError> {
         let found = self.0.labelled(point);
-        Ok(found.map_or_else(general::failed, |(label, eps_t)| with_level(label, eps_t)))
+        Ok(found.map_or_else(general::failed, |(_, eps_t)| labelled(eps_t)))
     }
 
     fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionError> {
@@ -88,7 +90,7 @@ impl Family for GainingFamily {
     }
 
     fn is_sure(&self, margin: &Margin) -> bool {
-        is_level(margin) || general::is_sure(margin)
+        is_level(margin)
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<CollisionLabel, Margin>, CollisionError> {

@@ -187,6 +187,8 @@ pub fn is_sure(margin: &Margin) -> bool {
         Place::Minimum { .. } | Place::Maximum { .. } | Place::End | Place::Branch(_) => true,
         Place::Exit(exit) => exit.guard == END,
         Place::Start { .. } => margin.exits.is_empty(),
+        // Collisions have no conditions.
+        Place::Condition => false,
     }
 }
 

@@ -5,6 +5,8 @@ use stickslip_plane::atlas::{AtlasError, Frame};
 use stickslip_plane::progress::SILENT;
 use stickslip_plane::{Range, gaining};
 
+use stickslip_tracer::Curve;
+
 use crate::laws::with_law;
 
 fn frame(name: &str, kappa: (f64, f64), psi: (f64, f64)) -> Frame {
@@ -50,6 +52,23 @@ fn the_boundary_is_where_the_restitution_is_one() {
             both[usize::from(eps_t.abs() > 1.0)] = true;
         }
         assert_eq!(both, [true; 2], "{name}");
+    }
+}
+
+/// At κψ = 1 the line touches a boundary of the switches, with κ = 4.5 and 10.5 for a history by
+/// displacement: regions are those of |ε_t| alone.
+#[test]
+fn lines_do_not_depend_on_where_switches_change() {
+    for (name, kappa, psi) in [
+        ("gran/hertz/history", (10.0, 11.0), (0.05, 0.15)),
+        ("granular/hertz/tsuji/mindlin/force", (4.0, 13.0), (0.05, 0.5)),
+    ] {
+        let frame = frame(name, kappa, psi);
+        let gaining = gaining::trace(frame, frame.tolerances().usual, SILENT).unwrap();
+        assert_eq!(gaining.objections(), [""; 0], "{name}");
+        assert!(!gaining.lines().is_empty());
+        let of_gain = |curve: &Curve<_, _>| curve.sides.iter().any(|side: &Vec<_>| side.is_empty());
+        assert!(gaining.atlas.plane.curves().iter().all(of_gain), "{name}");
     }
 }
 

@@ -144,6 +144,7 @@ fn progress_is_complete() {
         let (counter, steps) = match progress {
             Progress::Begin { steps } => (&begun, steps),
             Progress::Advance { steps } => (&advanced, steps),
+            Progress::Now { .. } => return,
         };
         counter.fetch_add(steps, std::sync::atomic::Ordering::Relaxed);
     };

@@ -15,7 +15,8 @@ use stickslip_tracer::{
 use crate::arrays::{expect_equal, numbers};
 use crate::failure::{bad_input, failed};
 
-/// A label: fires, begins, accumulates, unfinished or fails, and the guards that fire.
+/// A label: fires, begins, accumulates, unfinished or fails, and the guards that fire; or no_start,
+/// and the condition that does not hold.
 pub type Label = (&'static str, Vec<usize>);
 
 /// The boundaries and the regions of a family.
@@ -214,6 +215,7 @@ pub fn place(margin: &Margin) -> &'static str {
         Place::Exit(_) => "exit",
         Place::Branch(_) => "branch",
         Place::End => "end",
+        Place::Condition => "condition",
     }
 }
 
@@ -235,6 +237,7 @@ pub fn label(label: &Itinerary) -> Label {
         Itinerary::Accumulates => ("accumulates", Vec::new()),
         Itinerary::Unfinished => ("unfinished", Vec::new()),
         Itinerary::Fails => ("fails", Vec::new()),
+        Itinerary::NoStart(failed) => ("no_start", vec![*failed]),
     }
 }
 

@@ -8,7 +8,9 @@ use stickslip_solver::Options;
 use stickslip_solver::sliding::SlidingMode;
 use stickslip_tracer::{DynamicProblem, DynamicSetting, Point};
 
-use crate::hybrid::arguments::{ChangeArguments, Settings, Start, StartArguments, SystemArguments};
+use crate::hybrid::arguments::{
+    ChangeArguments, FunctionArguments, Settings, Start, StartArguments, SystemArguments,
+};
 use crate::hybrid::function::{Caller, Code, Function};
 use crate::hybrid::modes::{Change, Parts};
 use crate::hybrid::system::{At, Sliding, System};
@@ -27,6 +29,8 @@ pub struct Blueprint {
     pub start: Start,
     /// What changes mode and state at the start.
     pub first: Change,
+    /// What must not be negative at the start.
+    pub required: Vec<Function>,
     pub end: f64,
     pub options: Options,
 }
@@ -36,14 +40,16 @@ impl Blueprint {
         py: Python<'_>,
         system: SystemArguments,
         args: &Bound<'_, PyTuple>,
-        (start, first): (StartArguments<'_>, ChangeArguments),
+        (start, first, required): (StartArguments<'_>, ChangeArguments, Vec<FunctionArguments>),
         end: f64,
         settings: &Settings,
     ) -> PyResult<Self> {
         let (_, options) = settings.checked()?;
         let (mut parts, mut first) = (Parts::new(system)?, Change::new(first)?);
+        let mut required = required.into_iter().map(Function::new).collect::<PyResult<Vec<_>>>()?;
         let (mut parameters, mut own_parameters) = (vec![0.0; 2], vec![0]);
-        for Function { code, .. } in parts.functions_mut().chain(first.functions_mut()) {
+        let at_start = first.functions_mut().chain(&mut required);
+        for Function { code, .. } in parts.functions_mut().chain(at_start) {
             let Code::Compiled(compiled) = code else { continue };
             let own = compiled.place_in_family(py, parameters.len())?;
             if own.is_empty() {
@@ -62,6 +68,7 @@ impl Blueprint {
             own: own_parameters,
             start: start.owned(),
             first,
+            required,
             end,
             options,
         })
@@ -69,7 +76,8 @@ impl Blueprint {
 
     /// Whether no function needs the interpreter.
     pub fn is_compiled(&self) -> bool {
-        self.parts.is_compiled() && self.first.functions().all(Function::is_compiled)
+        let mut at_start = self.first.functions().chain(&self.required);
+        self.parts.is_compiled() && at_start.all(Function::is_compiled)
     }
 
     /// The system at a point.
@@ -111,5 +119,15 @@ impl DynamicProblem for Members {
         // A run from where the solution does not go on fails.
         let mode = mode.unwrap_or_else(|refusal| SlidingMode::refused(regime, refusal));
         Some(DynamicSetting { system, mode, s: start.s, state, end })
+    }
+
+    fn conditions(&self, point: &Point) -> Vec<f64> {
+        let Blueprint { start, required, .. } = &*self.blueprint;
+        if required.is_empty() {
+            return Vec::new();
+        }
+        let system = self.blueprint.system([point.x, point.y], self.trouble.clone());
+        let regime = system.first(start.mode);
+        required.iter().map(|it| system.number(it, regime, start.s, &start.state)).collect()
     }
 }

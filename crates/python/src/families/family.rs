@@ -21,7 +21,9 @@ use crate::families::runner::{Made, Runner};
 use crate::families::survey::{Callbacks, survey};
 use crate::formulas::{FormulaSystem, Settings as FormulaSettings};
 use crate::hybrid::Level;
-use crate::hybrid::arguments::{ChangeArguments, Settings, StartArguments, SystemArguments};
+use crate::hybrid::arguments::{
+    ChangeArguments, FunctionArguments, Settings, StartArguments, SystemArguments,
+};
 use crate::hybrid::trouble::Trouble;
 use crate::parallel::Threads;
 
@@ -37,14 +39,14 @@ pub struct HybridFamily {
 
 #[pymethods]
 impl HybridFamily {
-    /// A family with a system whose modes all have the guards of the family, the start and what
-    /// changes it, the end, and what files say about it.
+    /// A family with a system whose modes all have the guards of the family, the start, what
+    /// changes it and what it requires, the end, and what files say about it.
     #[new]
     fn new(
         py: Python<'_>,
         system: SystemArguments,
         args: Bound<'_, PyTuple>,
-        start: (StartArguments<'_>, ChangeArguments),
+        start: (StartArguments<'_>, ChangeArguments, Vec<FunctionArguments>),
         end: f64,
         settings: Settings,
         description: Description,

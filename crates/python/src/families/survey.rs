@@ -6,7 +6,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use stickslip_plane::progress::InParallel;
@@ -15,6 +15,7 @@ use stickslip_tracer::{
     TraceError, Watch,
 };
 
+use crate::background::tell;
 use crate::failure::failed;
 use crate::families::failure::{UserError, of_trace};
 use crate::families::runner::Runner;
@@ -29,7 +30,30 @@ pub struct Callbacks(Option<Py<PyAny>>, Option<Py<PyAny>>);
 struct Meter {
     done: usize,
     steps: usize,
+    /// What is done now, in words.
+    doing: &'static str,
     told: Option<Instant>,
+}
+
+/// What a function that may cancel has said, and when it was asked.
+struct Said {
+    answer: AtomicBool,
+    asked: Mutex<Option<Instant>>,
+}
+
+impl Said {
+    /// The function is asked so often, at most: runs may be shorter than a call of Python.
+    const PAUSE: Duration = Duration::from_millis(10);
+
+    /// Whether it is time to ask again.
+    fn is_due(&self) -> bool {
+        let mut asked = lock(&self.asked);
+        let due = asked.is_none_or(|asked| asked.elapsed() >= Self::PAUSE);
+        if due {
+            *asked = Some(Instant::now());
+        }
+        due
+    }
 }
 
 /// Computes the runs on the threads of the current pool, or one after the other.
@@ -83,9 +107,9 @@ pub fn watched<T: Send>(
     callbacks: &Callbacks,
     work: impl Fn(Runs, Watch<'_>) -> T + Send + Sync,
 ) -> PyResult<(T, Option<PyErr>)> {
-    let meter = Mutex::new(Meter { done: 0, steps: 0, told: None });
+    let meter = Mutex::new(Meter { done: 0, steps: 0, doing: "", told: None });
     let report = |progress: Progress| callbacks.tell(&meter, progress, trouble);
-    let said = AtomicBool::new(false);
+    let said = Said { answer: AtomicBool::new(false), asked: Mutex::new(None) };
     let cancelled = || callbacks.cancel(&said, trouble);
     let watch = Watch::from(&report).cancelled_by(&cancelled);
     let executor = Runs { parallel: threads.is_some() };
@@ -138,48 +162,52 @@ impl Callbacks {
     /// Reports progress, now and then.
     fn tell(&self, meter: &Mutex<Meter>, progress: Progress, trouble: &Trouble) {
         let Some(function) = &self.0 else { return };
-        let (done, steps) = {
+        let (progress, doing) = {
             let mut meter = lock(meter);
             match progress {
                 Progress::Begin { steps } => meter.steps += steps,
                 Progress::Advance { steps } => meter.done += steps,
+                Progress::Now { what } => meter.doing = what,
             }
             if meter.told.is_some_and(|told| told.elapsed() < PAUSE) {
                 return;
             }
             meter.told = Some(Instant::now());
-            (meter.done, meter.steps)
+            ((meter.done, meter.steps), meter.doing)
         };
-        Self::call(function, (done, steps), trouble);
+        Self::call(function, progress, doing, trouble);
     }
 
     /// Reports the last progress.
     fn tell_last(&self, meter: &Mutex<Meter>, trouble: &Trouble) {
         let Some(function) = &self.0 else { return };
-        let (done, steps) = {
+        let (progress, doing) = {
             let meter = lock(meter);
-            (meter.done, meter.steps)
+            ((meter.done, meter.steps), meter.doing)
         };
-        Self::call(function, (done, steps), trouble);
+        Self::call(function, progress, doing, trouble);
     }
 
-    fn call(function: &Py<PyAny>, progress: (usize, usize), trouble: &Trouble) {
-        if let Err(error) = Python::attach(|py| function.call1(py, progress)) {
+    fn call(function: &Py<PyAny>, progress: (usize, usize), doing: &str, trouble: &Trouble) {
+        if let Err(error) = Python::attach(|py| tell(py, function, progress, doing)) {
             trouble.ask(error);
         }
     }
 
     /// Whether the trace is to end. `said` keeps the answer of the function.
-    fn cancel(&self, said: &AtomicBool, trouble: &Trouble) -> bool {
-        if trouble.has_failed() || trouble.is_asked() || said.load(Ordering::Relaxed) {
+    fn cancel(&self, said: &Said, trouble: &Trouble) -> bool {
+        if trouble.has_failed() || trouble.is_asked() || said.answer.load(Ordering::Relaxed) {
             return true;
         }
         let Some(function) = &self.1 else { return false };
+        if !said.is_due() {
+            return false;
+        }
         let answer = Python::attach(|py| function.call0(py)?.is_truthy(py));
         match answer {
-            Ok(answer) => said.store(answer, Ordering::Relaxed),
+            Ok(answer) => said.answer.store(answer, Ordering::Relaxed),
             Err(error) => trouble.ask(error),
         }
-        said.load(Ordering::Relaxed) || trouble.is_asked()
+        said.answer.load(Ordering::Relaxed) || trouble.is_asked()
     }
 }

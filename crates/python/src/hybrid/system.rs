@@ -263,6 +263,13 @@ impl System {
         }
     }
 
+    /// The number that a condition returns; NaN if it fails.
+    pub fn number(&self, condition: &Function, regime: usize, t: f64, y: &[f64]) -> f64 {
+        let mut value = [f64::NAN];
+        self.evaluate(condition, regime, (t, y), &mut value, true);
+        value[0]
+    }
+
     /// The regime after `change` in `regime`, with the state written to `y`.
     pub fn change(&self, regime: usize, change: &Change, t: f64, y: &mut [f64]) -> usize {
         let mode = self.regimes.borrow().mode(regime);
@@ -399,10 +406,7 @@ impl SwitchedDynamic for System {
 
     /// The condition of the transition at a guard; NaN if it has none.
     fn transition_condition(&self, regime: usize, guard: usize, t: f64, y: &[f64]) -> f64 {
-        let mut value = [f64::NAN];
-        if let Some(function) = &self.mode_of(regime).conditions[guard] {
-            self.evaluate(function, regime, (t, y), &mut value, true);
-        }
-        value[0]
+        let condition = &self.mode_of(regime).conditions[guard];
+        condition.as_ref().map_or(f64::NAN, |function| self.number(function, regime, t, y))
     }
 }

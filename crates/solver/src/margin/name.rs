@@ -107,6 +107,9 @@ pub enum Place {
     Branch(Exit),
     /// The end of the run, at a terminal guard or at the end of its span.
     End,
+    /// Before the run: the condition of its start that has the number of the guard. A family of
+    /// runs has such conditions; a system has none.
+    Condition,
 }
 
 /// The name of a margin: the value of `guard` at `place`, in the phase that follows `exits`.

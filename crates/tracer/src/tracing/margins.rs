@@ -39,10 +39,8 @@ const ROUNDS: usize = 8;
 const EDGE: u32 = 5;
 
 /// A search for the zero sets of margins in a window.
-pub(crate) struct Lines<'f, 'w, F: Family> {
+pub(crate) struct Lines<'f, F: Family> {
     runs: Runs<'f, F>,
-    /// While it cancels, what is found is not whole.
-    watch: Watch<'w>,
     all: Vec<Line<F::Margin>>,
     /// The number of lines that were found, or found to be longer.
     changes: usize,
@@ -86,17 +84,16 @@ pub fn trace_by_margins<F: Family>(
     lines.network()
 }
 
-impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
+impl<'f, F: Family> Lines<'f, F> {
     /// A search that has found nothing yet. Lines end on the edges of the window.
     pub fn new(
         family: &'f F,
         window: &Window,
         options: &TraceOptions,
-        watch: Watch<'w>,
+        watch: Watch<'f>,
     ) -> Traced<Self, F> {
         Ok(Self {
-            runs: Runs::new(family, *window, *options)?,
-            watch,
+            runs: Runs::new(family, *window, *options)?.watched(watch),
             all: Vec::new(),
             changes: 0,
             labels: HashMap::new(),
@@ -111,11 +108,11 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         self.curves.iter().any(|curve| !self.runs.cusps(&curve.margin).is_empty())
     }
 
-    /// Searches along the edges of a lattice, and around all places where lines meet. Returns
-    /// `false` if the watch cancels.
-    pub fn explore<E: Executor<F>>(&mut self, executor: &E) -> Traced<bool, F> {
+    /// Searches along the edges of a lattice, and around all places where lines meet.
+    pub fn explore<E: Executor<F>>(&mut self, executor: &E) -> Traced<(), F> {
+        self.runs.watch.report(Progress::Now { what: "following the zeros of margins" });
         let size = self.runs.options.cells + 1;
-        let Some(samples) = self.lattice(executor)? else { return Ok(false) };
+        let samples = self.lattice(executor)?;
         let edges = (0..size * size).flat_map(|index| {
             let (column, row) = (index / size, index % size);
             let up = (row + 1 < size).then_some([index, index + 1]);
@@ -123,45 +120,35 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
             up.into_iter().chain(right)
         });
         let edges: Vec<[usize; 2]> = edges.collect();
-        self.watch.report(Progress::Begin { steps: edges.len() + samples.len() });
+        self.runs.watch.report(Progress::Begin { steps: edges.len() + samples.len() });
         for [one, other] in edges {
-            if self.watch.is_cancelled() {
-                return Ok(false);
-            }
             let ends = [one, other].map(|index| [index / size, index % size]);
             let along = |axis: usize| ends[0][axis] == ends[1][axis];
             let outermost = |axis: usize| ends[0][axis] == 0 || ends[0][axis] + 1 == size;
             let divisions =
                 if (0..2).any(|axis| along(axis) && outermost(axis)) { EDGE } else { 0 };
             self.divide(&samples[one], &samples[other], divisions)?;
-            self.watch.report(Progress::Advance { steps: 1 });
+            self.runs.watch.report(Progress::Advance { steps: 1 });
         }
         let cell = self.runs.window.extent() / self.runs.options.cells as f64;
         for index in 0..samples.len() {
-            if self.watch.is_cancelled() {
-                return Ok(false);
-            }
             let is_known = |[a, b]: &[Point; 2]| self.all.iter().any(|line| line.crosses(a, b));
             let pending = island::beside(&self.runs, &samples, size, index, &cell, is_known)?;
             for ends in pending {
                 self.search(ends)?;
             }
-            self.watch.report(Progress::Advance { steps: 1 });
+            self.runs.watch.report(Progress::Advance { steps: 1 });
         }
         self.complete()
     }
 
-    /// Searches between pairs of places where runs differ. Returns whether something was found;
-    /// `None` if the watch cancels.
-    pub fn look(&mut self, brackets: &[[Point; 2]]) -> Traced<Option<bool>, F> {
+    /// Searches between pairs of places where runs differ. Returns whether something was found.
+    pub fn look(&mut self, brackets: &[[Point; 2]]) -> Traced<bool, F> {
         /// More brackets show nothing new.
         const MOST: usize = 200;
         let before = self.changes;
-        self.watch.report(Progress::Begin { steps: brackets.len().min(MOST) });
+        self.runs.watch.report(Progress::Begin { steps: brackets.len().min(MOST) });
         for &[a, b] in brackets.iter().take(MOST) {
-            if self.watch.is_cancelled() {
-                return Ok(None);
-            }
             let seed = Seed::between(&self.runs, &[a, b])?;
             let begun = match &seed {
                 Some(seed) => self.begin(&seed.point, &seed.margin, &(b - a))?,
@@ -170,10 +157,11 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
             if !begun {
                 self.search([a, b])?;
             }
-            self.watch.report(Progress::Advance { steps: 1 });
+            self.runs.watch.report(Progress::Advance { steps: 1 });
         }
         let found = self.changes != before;
-        Ok(self.complete()?.then_some(found))
+        self.complete()?;
+        Ok(found)
     }
 
     /// The network of the lines that runs see.
@@ -191,11 +179,11 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
 
     /// The places where the curves of the last network are extremal in a coordinate.
     pub fn extrema(&self) -> Traced<Vec<Extremum>, F> {
-        extrema(&self.runs, &self.curves)
+        extrema(&self.runs.aside(), &self.curves)
     }
 
     /// The free runs of a lattice, in columns. Its outermost places lie just inside the edges.
-    fn lattice<E: Executor<F>>(&self, executor: &E) -> Traced<Option<Vec<Sampled<F>>>, F> {
+    fn lattice<E: Executor<F>>(&self, executor: &E) -> Traced<Vec<Sampled<F>>, F> {
         let cells = self.runs.options.cells;
         let inset = Point::repeat(self.runs.lengths.half);
         let low = self.runs.window.low + inset;
@@ -206,42 +194,35 @@ impl<'f, 'w, F: Family> Lines<'f, 'w, F> {
         };
         let points: Vec<Point> = (0..(cells + 1) * (cells + 1)).map(place).collect();
         let free = |portion: &[Point]| executor.free_runs(self.runs.family(), portion);
-        let Some(found) = self.watch.in_portions(&points, free) else { return Ok(None) };
+        let found = self.runs.watch.in_portions(&points, free).ok_or(TraceError::Cancelled)?;
         self.runs.count_free(points.len());
         let found = points.into_iter().zip(found);
         let found = found.map(|(point, run)| Ok((point, checked::<F>(&point, run)?)));
-        found.collect::<Traced<_, F>>().map(Some)
+        found.collect()
     }
 
     /// Looks around the places where lines meet, and beside their ends, until nothing new is found.
-    /// Returns `false` if the watch cancels.
-    fn complete(&mut self) -> Traced<bool, F> {
+    fn complete(&mut self) -> Traced<(), F> {
         for _ in 0..ROUNDS {
             let before = self.changes;
             let Arranged { vertices, doubts, .. } = self.arranged()?;
             let inside = vertices.iter().filter(|vertex| !vertex.kind.is_on_window());
             let places: Vec<Point> = inside.map(|vertex| vertex.point).chain(doubts).collect();
             let ends = self.lost_ends();
-            self.watch.report(Progress::Begin { steps: ends.len() + places.len() });
+            self.runs.watch.report(Progress::Begin { steps: ends.len() + places.len() });
             for [index, end] in ends {
-                if self.watch.is_cancelled() {
-                    return Ok(false);
-                }
                 self.look_beside(index, end)?;
-                self.watch.report(Progress::Advance { steps: 1 });
+                self.runs.watch.report(Progress::Advance { steps: 1 });
             }
             for place in places {
-                if self.watch.is_cancelled() {
-                    return Ok(false);
-                }
                 self.look_around(&place)?;
-                self.watch.report(Progress::Advance { steps: 1 });
+                self.runs.watch.report(Progress::Advance { steps: 1 });
             }
             if self.changes == before {
                 break;
             }
         }
-        Ok(!self.watch.is_cancelled())
+        Ok(())
     }
 
     /// The ends of lines that were lost, each a line and 0 or 1.

@@ -6,6 +6,7 @@ use crate::executor::FreeRunOf;
 use crate::family::{Family, FreeRun};
 use crate::lengths::Lengths;
 use crate::options::{TraceError, TraceOptions};
+use crate::watch::Watch;
 use crate::window::{Point, Window};
 
 /// The result of a computation of the tracer with a family.
@@ -31,6 +32,8 @@ pub struct Runs<'a, F: Family> {
     pub(crate) window: Window,
     pub(crate) options: TraceOptions,
     pub(crate) lengths: Lengths,
+    /// Cancels between runs.
+    pub(crate) watch: Watch<'a>,
     free: Cell<usize>,
     prescribed: Cell<usize>,
 }
@@ -47,7 +50,25 @@ impl<'a, F: Family> Runs<'a, F> {
             return Err(TraceError::Window { window });
         }
         let lengths = Lengths::of(extent.min());
-        Ok(Self { family, window, options, lengths, free: Cell::new(0), prescribed: Cell::new(0) })
+        let (watch, free, prescribed) = (Watch::SILENT, Cell::new(0), Cell::new(0));
+        Ok(Self { family, window, options, lengths, watch, free, prescribed })
+    }
+
+    /// The same runs, which end in [`TraceError::Cancelled`] when `watch` cancels.
+    pub(crate) fn watched(self, watch: Watch<'a>) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Counts a run that follows.
+    fn count(&self, runs: &Cell<usize>) -> Traced<(), F> {
+        self.go_on()?;
+        runs.set(runs.get() + 1);
+        Ok(())
+    }
+
+    /// Ends the search if the watch cancels it.
+    pub(crate) fn go_on(&self) -> Traced<(), F> {
+        if self.watch.is_cancelled() { Err(TraceError::Cancelled) } else { Ok(()) }
     }
 
     /// The same runs in a larger window, with lengths relative to this one.
@@ -65,15 +86,17 @@ impl<'a, F: Family> Runs<'a, F> {
         self.family
     }
 
-    /// The same runs, with the numbers of free runs and of prescribed runs before.
-    pub(crate) fn counted(self, [free, prescribed]: [usize; 2]) -> Self {
-        Self { free: Cell::new(free), prescribed: Cell::new(prescribed), ..self }
+    /// Counts from these numbers of free runs and of prescribed runs.
+    pub(crate) fn count_from(&self, [free, prescribed]: [usize; 2]) {
+        self.free.set(free);
+        self.prescribed.set(prescribed);
     }
 
-    /// The same runs, with counts of their own.
+    /// The same runs, with counts of their own, which nobody cancels.
     pub(crate) fn aside(&self) -> Self {
         let &Self { family, window, options, lengths, .. } = self;
-        Self { family, window, options, lengths, free: Cell::new(0), prescribed: Cell::new(0) }
+        let (watch, free, prescribed) = (Watch::SILENT, Cell::new(0), Cell::new(0));
+        Self { family, window, options, lengths, watch, free, prescribed }
     }
 
     /// Counts free runs that were computed elsewhere.
@@ -82,12 +105,12 @@ impl<'a, F: Family> Runs<'a, F> {
     }
 
     pub(crate) fn label(&self, point: &Point) -> Traced<F::Label, F> {
-        self.free.set(self.free.get() + 1);
+        self.count(&self.free)?;
         self.family.label(point).map_err(|source| TraceError::Run { point: *point, source })
     }
 
     pub(crate) fn free(&self, point: &Point) -> Traced<FreeRun<F::Label, F::Margin>, F> {
-        self.free.set(self.free.get() + 1);
+        self.count(&self.free)?;
         checked::<F>(point, self.family.free_run(point))
     }
 
@@ -98,7 +121,7 @@ impl<'a, F: Family> Runs<'a, F> {
         if !(Window { low: low - beyond, high: high + beyond }).contains(point) {
             return Ok(None);
         }
-        self.prescribed.set(self.prescribed.get() + 1);
+        self.count(&self.prescribed)?;
         let value = self
             .family
             .margin(point, margin)

@@ -3,7 +3,7 @@
 
 use stickslip_solver::margin::Place;
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
-use stickslip_tracer::{HybridFamily, Itinerary, Point, TraceOptions, Window, trace};
+use stickslip_tracer::{HybridFamily, Itinerary, Point, Problem, TraceOptions, Window, trace};
 
 use crate::any::{any, any_system};
 
@@ -80,6 +80,39 @@ fn onwards(_: f64) -> (usize, f64) {
 
 fn only_first(guard: Guard, mode: usize) -> [Guard; 2] {
     if mode == 0 { [guard, OFF] } else { [OFF, OFF] }
+}
+
+/// A clock that starts where h is not negative.
+struct Above;
+
+impl Problem<1, 2> for Above {
+    type System = Clock;
+
+    fn at(&self, point: &Point) -> (Clock, Start<usize, 1>) {
+        let h = point.y - point.x * point.x;
+        let (guards, next) = (|_| [OFF, OFF], onwards);
+        let clock = Clock { h, guards, values: |_, _, _| [1.0; 2], next };
+        (clock, Start { mode: 0, s: 0.0, state: State::from([h.sqrt()]) })
+    }
+    fn conditions(&self, point: &Point) -> Vec<f64> {
+        vec![1.0 - point.x, point.y - point.x * point.x]
+    }
+}
+
+#[test]
+fn a_start_that_exists_under_conditions() {
+    let options = Options::with_tolerance(1e-13);
+    let family = any(HybridFamily { problem: Above, method: Dop853, options, end: 2.0 });
+    let network = trace(&family, &WINDOW, &TraceOptions::default()).expect("a trace");
+    assert_eq!(network.unresolved, []);
+    let [curve] = &network.curves[..] else { panic!("{:?}", network.curves) };
+    assert_eq!((curve.margin.place, curve.margin.guard), (Place::Condition, 1));
+    for node in &curve.nodes {
+        assert!((node.point.y - node.point.x * node.point.x).abs() < 2e-12, "{node:?}");
+    }
+    let mut sides = curve.sides.clone();
+    sides.sort();
+    assert_eq!(sides, [Itinerary::Fires(Vec::new()), Itinerary::NoStart(1)]);
 }
 
 #[test]

@@ -360,6 +360,7 @@ fn asked(patience: usize) -> (StackOf<Moving>, [usize; 2]) {
         match progress {
             Progress::Begin { steps } => begun.fetch_add(steps, Ordering::Relaxed),
             Progress::Advance { steps } => done.fetch_add(steps, Ordering::Relaxed),
+            Progress::Now { .. } => 0,
         };
     };
     // It says so only once.

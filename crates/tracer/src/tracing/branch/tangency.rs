@@ -116,7 +116,9 @@ fn stalls_with_root(values: &[f64]) -> bool {
     least <= 0.1 * most && values.len() > 2 && values.windows(3).all(is_root)
 }
 
-/// Considers that the branch has the root. The graze is a margin of the runs beyond its boundary.
+/// Considers that the branch has the root. The graze is a margin of the runs beyond its boundary,
+/// and of those on the branch only if the branch's margin ceases there: so it is where a condition
+/// of a start ends.
 fn behind_others<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -130,8 +132,10 @@ fn behind_others<F: Family>(
         margin == own || known.any(|(known, _)| known == margin)
     };
     for place in [from.node.point + aside, from.node.point - aside] {
+        let ceases = runs.margin(&place, own)?.is_none();
+        let is_new = |margin: &F::Margin| !is_known(margin) || ceases && margin != own;
         let margins = runs.free(&place)?.margins.into_iter().map(|(margin, _)| margin);
-        for graze in margins.filter(|margin| runs.is_sure(margin) && !is_known(margin)) {
+        for graze in margins.filter(|margin| runs.is_sure(margin) && is_new(margin)) {
             let gradient = |point| runs.gradient(point, &graze, tangent, track.radius);
             let start = &from.node.point;
             let Some(slope) = gradient(start)? else { continue };

@@ -11,7 +11,7 @@ use crate::tracing::margins::{Arranged, Lines};
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 
-impl<F: Family> Lines<'_, '_, F> {
+impl<F: Family> Lines<'_, F> {
     /// The greatest number of lines. Many are not seen by runs.
     pub(super) fn most(&self) -> usize {
         self.runs.options.max_curves.saturating_mul(2)
@@ -55,6 +55,7 @@ impl<F: Family> Lines<'_, '_, F> {
         }
         let reach = 2.0 * self.runs.lengths.same;
         for (vertex, it) in vertices.iter().enumerate() {
+            self.runs.go_on()?;
             for (line, own) in self.all.iter().zip(&mut cuts) {
                 let known = own.iter().any(|cut| cut.vertex == vertex);
                 if let Some((place, _)) = line.near(&it.point, reach).filter(|_| !known) {

@@ -8,7 +8,7 @@ use crate::tracing::margins::line::{Place, Reach};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
-impl<F: Family> Lines<'_, '_, F> {
+impl<F: Family> Lines<'_, F> {
     /// The ends of lines inside the window, each a line and 0 or 1. Those that lie on other lines
     /// come first: where these end, lines end that were lost farther away.
     pub(super) fn open_ends(&self) -> Vec<[usize; 2]> {

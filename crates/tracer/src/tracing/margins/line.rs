@@ -5,7 +5,6 @@ use crate::curve::Node;
 use crate::family::Family;
 use crate::tracing::corrector::{correct, correct_on_edge};
 use crate::tracing::runs::{Runs, Traced};
-use crate::watch::Watch;
 use crate::window::Point;
 
 /// Where a line ends.
@@ -170,17 +169,16 @@ struct Track<M> {
 /// taken.
 pub(super) fn trace<F: Family>(
     runs: &Runs<'_, F>,
-    watch: &Watch<'_>,
     margin: &F::Margin,
     origin: &Point,
     gradient: &Point,
 ) -> Traced<Option<Line<F::Margin>>, F> {
     let tangent = Point::new(gradient.y, -gradient.x).normalize();
     let start = Node { point: *origin, tangent };
-    let (mut track, end) = follow(runs, watch, margin, &start, gradient)?;
+    let (mut track, end) = follow(runs, margin, &start, gradient)?;
     let Some(end) = end else { return Ok(Some(Line::new(margin, track, None))) };
     let back = Node { point: *origin, tangent: -tangent };
-    let (behind, first) = follow(runs, watch, margin, &back, gradient)?;
+    let (behind, first) = follow(runs, margin, &back, gradient)?;
     let turned = behind.nodes.iter().skip(1).rev();
     let mut nodes: Vec<Node> =
         turned.map(|node| Node { point: node.point, tangent: -node.tangent }).collect();
@@ -195,7 +193,6 @@ pub(super) fn trace<F: Family>(
 /// Follows a margin in one direction. The end is `None` if the line is closed.
 fn follow<F: Family>(
     runs: &Runs<'_, F>,
-    watch: &Watch<'_>,
     margin: &F::Margin,
     start: &Node,
     gradient: &Point,
@@ -212,7 +209,7 @@ fn follow<F: Family>(
     };
     let mut h = lengths.around;
     while track.nodes.len() < options.max_nodes {
-        if h < lengths.same || watch.is_cancelled() {
+        if h < lengths.same {
             return Ok((track, Some(Reach::Lost)));
         }
         h = h.min(options.max_step * lengths.scale);

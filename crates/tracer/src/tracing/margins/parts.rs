@@ -63,7 +63,7 @@ struct Seen<L> {
     sides: [L; 2],
 }
 
-impl<F: Family> Lines<'_, '_, F> {
+impl<F: Family> Lines<'_, F> {
     /// The curves that runs see of the parts, and their vertices.
     pub(super) fn seen(
         &mut self,
@@ -73,9 +73,7 @@ impl<F: Family> Lines<'_, '_, F> {
         let mut doubts = Vec::new();
         let mut all = Vec::new();
         for part in parts {
-            if self.watch.is_cancelled() {
-                break;
-            }
+            self.runs.go_on()?;
             let sides = self.sides(part, &mut doubts)?;
             if sides[0] != sides[1] {
                 let length = part.length(&self.all[part.line]);
@@ -86,6 +84,7 @@ impl<F: Family> Lines<'_, '_, F> {
         all.sort_by(|one, other| other.0.total_cmp(&one.0));
         let mut seen: Vec<(usize, Seen<F::Label>)> = Vec::new();
         for (_, order, next) in all {
+            self.runs.go_on()?;
             if !self.is_twin(&next, &seen) {
                 seen.push((order, next));
             }

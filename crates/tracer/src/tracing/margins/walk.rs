@@ -12,7 +12,7 @@ use crate::window::Point;
 /// The most zeros on one walk.
 const STEPS: usize = 24;
 
-impl<F: Family> Lines<'_, '_, F> {
+impl<F: Family> Lines<'_, F> {
     /// Searches for zeros of margins between two places, both ways.
     pub(super) fn between(&mut self, one: &Sampled<F>, other: &Sampled<F>) -> Traced<(), F> {
         let ahead = self.walk(one, other)?;
@@ -87,7 +87,7 @@ impl<F: Family> Lines<'_, '_, F> {
             return Ok(false);
         }
         self.seeds += 1;
-        let Some(new) = trace(runs, &self.watch, margin, &found.point, &gradient)? else {
+        let Some(new) = trace(runs, margin, &found.point, &gradient)? else {
             return Ok(false);
         };
         for old in self.all.iter_mut().filter(|line| line.margin == new.margin) {

@@ -13,7 +13,12 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// The state from which [`Self::resume`] goes on. While the tracer looks again, the result is
     /// the state before that.
     pub(crate) fn state(&self) -> StateOf<F> {
-        self.before_look.as_deref().cloned().unwrap_or_else(|| State {
+        self.before_look.as_deref().cloned().unwrap_or_else(|| self.now())
+    }
+
+    /// The state between two tasks.
+    pub(super) fn now(&self) -> StateOf<F> {
+        State {
             network: self.uncut(),
             uncertainties: self.builder.stops.iter().map(|stop| stop.uncertainty).collect(),
             suspects: self.builder.suspects.clone(),
@@ -21,7 +26,18 @@ impl<'f, F: Family> Tracer<'f, F> {
             stage: self.stage.clone(),
             brackets: None,
             surveyed: false,
-        })
+        }
+    }
+
+    /// Goes back, or on, to a state between two tasks.
+    pub(super) fn restore(&mut self, state: StateOf<F>) {
+        let statistics = state.network.statistics;
+        self.runs.count_from([statistics.free_runs, statistics.prescribed_runs]);
+        let stops = state.network.vertices.iter().zip(state.uncertainties);
+        let stops = stops.map(|(vertex, uncertainty)| Stop { point: vertex.point, uncertainty });
+        self.builder =
+            Builder::of(stops.collect(), state.network, state.suspects, self.runs.lengths);
+        (self.probed, self.stage) = (state.probed, state.stage);
     }
 
     /// A tracer that goes on from a state of a search in `window`.
@@ -32,18 +48,12 @@ impl<'f, F: Family> Tracer<'f, F> {
         family: &'f F,
         window: &Window,
         options: &TraceOptions,
-        state: StateOf<F>,
+        mut state: StateOf<F>,
     ) -> Traced<Self, F> {
         let mut tracer = Self::new(family, window, options)?;
-        let statistics = state.network.statistics;
-        tracer.runs = tracer.runs.counted([statistics.free_runs, statistics.prescribed_runs]);
-        let stops = state.network.vertices.iter().zip(state.uncertainties);
-        let stops = stops.map(|(vertex, uncertainty)| Stop { point: vertex.point, uncertainty });
-        tracer.builder =
-            Builder::of(stops.collect(), state.network, state.suspects, tracer.runs.lengths);
-        tracer.probed = state.probed;
-        tracer.stage = state.stage;
-        if let Some(brackets) = state.brackets {
+        let brackets = state.brackets.take();
+        tracer.restore(state);
+        if let Some(brackets) = brackets {
             tracer.begin_again(brackets);
         }
         Ok(tracer)

@@ -4,40 +4,56 @@
 //! needed to go on, from memory or from a file. The runs of the grid are computed again. So is a
 //! verification that was cancelled, and a second look starts again from the network before it.
 
+use std::time::Instant;
+
 use crate::executor::Executor;
 use crate::family::Family;
+use crate::options::TraceError;
 use crate::tracing::runs::{Sampled, Traced, checked};
 use crate::tracing::tracer::Tracer;
 use crate::tracing::tracer::island;
 use crate::tracing::tracer::sliver;
 use crate::tracing::tracer::stage::Stage;
-use crate::watch::{Progress, Watch};
+use crate::watch::Progress;
 use crate::window::Point;
 
 impl<F: Family> Tracer<'_, F> {
-    /// Goes on with the search to its end, or until `watch` cancels. Returns whether the end is
-    /// reached; if not, a later call goes on from there, to the same result.
+    /// Goes on with the search to its end, or until the watch cancels. Returns whether the end is
+    /// reached; if not, a later call goes on, to the same result.
+    ///
+    /// A task that is cancelled leaves nothing: the tracer goes back to a state between two tasks
+    /// that it has kept, and does again what it has done since.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
-    pub fn proceed<E: Executor<F>>(&mut self, executor: &E, watch: &Watch<'_>) -> Traced<bool, F> {
-        let mut left = self.steps_left();
+    pub fn proceed<E: Executor<F>>(&mut self, executor: &E) -> Traced<bool, F> {
+        /// How many times as long as to keep a state is the time up to the next one.
+        const KEEP: u32 = 20;
+        let watch = self.runs.watch;
+        let keep = |tracer: &Self| {
+            let begun = Instant::now();
+            (tracer.now(), KEEP * begun.elapsed(), Instant::now())
+        };
+        let (mut kept, mut left) = (keep(self), self.steps_left());
+        watch.report(Progress::Now { what: self.doing() });
         watch.report(Progress::Begin { steps: left });
         while self.stage != Stage::Done {
-            if watch.is_cancelled() {
-                return Ok(false);
-            }
-            if !self.sample(executor, watch)? {
-                return Ok(false);
+            if kept.2.elapsed() > kept.1 {
+                kept = keep(self);
             }
             let stage = std::mem::discriminant(&self.stage);
-            let along_edges = matches!(self.stage, Stage::Edges { .. });
-            if along_edges || !self.examine_vertex()? {
-                self.step()?;
+            match self.task(executor) {
+                Ok(()) => {}
+                Err(TraceError::Cancelled) => {
+                    self.restore(kept.0);
+                    return Ok(false);
+                }
+                Err(error) => return Err(error),
             }
             let ahead = self.steps_left();
             if std::mem::discriminant(&self.stage) != stage {
                 watch.report(Progress::Advance { steps: left });
+                watch.report(Progress::Now { what: self.doing() });
                 watch.report(Progress::Begin { steps: ahead });
                 // Islands are searched around places of the grid.
                 if !matches!(self.stage, Stage::Islands { .. }) {
@@ -54,6 +70,34 @@ impl<F: Family> Tracer<'_, F> {
         Ok(true)
     }
 
+    /// Does one task: it computes the runs with which a stage begins, and examines a new vertex or
+    /// does a step of the stage.
+    fn task<E: Executor<F>>(&mut self, executor: &E) -> Traced<(), F> {
+        if self.runs.watch.is_cancelled() {
+            return Err(TraceError::Cancelled);
+        }
+        self.sample(executor)?;
+        let along_edges = matches!(self.stage, Stage::Edges { .. });
+        if along_edges || !self.examine_vertex()? {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// What the stage does, in words.
+    fn doing(&self) -> &'static str {
+        match self.stage {
+            Stage::Edges { .. } => "searching along the edges of the window",
+            Stage::Grid { .. } => "searching along the grid",
+            Stage::Islands { .. } => "searching for islands",
+            Stage::Pairs { .. } => "looking again where runs have other labels",
+            Stage::CloseVertices { .. } => "searching between close vertices",
+            Stage::Settle => "looking again where something is open",
+            Stage::Polish => "solving for better places of vertices",
+            Stage::Done => "putting curves together",
+        }
+    }
+
     /// The number of steps of the stage that are not done yet.
     fn steps_left(&self) -> usize {
         let cells = self.runs.options.cells;
@@ -68,21 +112,20 @@ impl<F: Family> Tracer<'_, F> {
         }
     }
 
-    /// Computes the runs with which the stage begins, unless they are known. Returns `false` if
-    /// `watch` cancels.
-    fn sample<E: Executor<F>>(&mut self, executor: &E, watch: &Watch<'_>) -> Traced<bool, F> {
+    /// Computes the runs with which the stage begins, unless they are known.
+    fn sample<E: Executor<F>>(&mut self, executor: &E) -> Traced<(), F> {
         let samples =
             matches!(self.stage, Stage::Edges { .. } | Stage::Grid { .. } | Stage::Islands { .. });
         if !samples || !self.sampled.is_empty() {
-            return Ok(true);
+            return Ok(());
         }
         let points = self.places();
         let free = |portion: &[Point]| executor.free_runs(self.runs.family(), portion);
-        let Some(runs) = watch.in_portions(&points, free) else { return Ok(false) };
+        let runs = self.runs.watch.in_portions(&points, free).ok_or(TraceError::Cancelled)?;
         let runs = points.into_iter().zip(runs);
         let checked = runs.map(|(point, run)| Ok((point, checked::<F>(&point, run)?)));
         self.sampled = checked.collect::<Traced<_, F>>()?;
-        Ok(true)
+        Ok(())
     }
 
     /// The places of the stage's runs: along the window's edges, or in the middle of every cell.

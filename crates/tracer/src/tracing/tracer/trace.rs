@@ -52,6 +52,12 @@ impl<'f, F: Family> Tracer<'f, F> {
         })
     }
 
+    /// The same tracer, which reports to `watch` and ends when it cancels.
+    #[must_use]
+    pub fn watched(self, watch: Watch<'f>) -> Self {
+        Self { runs: self.runs.watched(watch), ..self }
+    }
+
     /// The window that is searched.
     pub(crate) fn window(&self) -> Window {
         self.window
@@ -63,7 +69,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// A run fails, or a margin is not a number.
     pub fn explore(&mut self) -> Traced<(), F> {
         self.stage = Stage::Edges { next: 0 };
-        self.proceed(&Serial, &Watch::SILENT).map(drop)
+        self.proceed(&Serial).map(drop)
     }
 
     /// Searches between pairs of places for boundaries that are not known yet. Returns whether the
@@ -74,7 +80,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     pub fn look_between(&mut self, pairs: &[[Point; 2]]) -> Traced<bool, F> {
         let before = self.builder.network.curves.len();
         self.begin_between(pairs.to_vec());
-        self.proceed(&Serial, &Watch::SILENT)?;
+        self.proceed(&Serial)?;
         Ok(self.builder.network.curves.len() != before)
     }
 
@@ -113,7 +119,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// # Errors
     /// A run fails, or a margin is not a number.
     pub fn extrema(&self) -> Traced<Vec<Extremum>, F> {
-        extrema(&self.runs, &self.network().curves)
+        extrema(&self.runs.aside(), &self.network().curves)
     }
 
     /// Scans a segment. It is first halved if the run in its middle differs from what the runs at
