@@ -26,15 +26,24 @@ impl<S: System> Examination<'_, S> {
     /// The error of the place of an event: how far rounding of time and state, and the value that
     /// is left of the guard, move its zero.
     pub(crate) fn error_of(&mut self, event: &Event<S>) -> f64 {
-        let Crossed { slope, jump, .. } = event.own();
-        let drift = self.drift(event.elapsed);
-        if event.elapsed == 0.0 || jump {
+        let place = (&event.step, event.elapsed, &event.state);
+        self.error_at((event.guard, event.own()), place, event.residual)
+    }
+
+    /// The error of the place where a guard has crossed zero up to a `residual`.
+    pub(crate) fn error_at(
+        &mut self,
+        (guard, Crossed { slope, jump, .. }): (usize, Crossed),
+        place: (&StepOf<S::State>, f64, &S::State),
+        residual: f64,
+    ) -> f64 {
+        let drift = self.drift(place.1);
+        if place.1 == 0.0 || jump {
             return drift;
         }
-        let place = (&event.step, event.elapsed, &event.state);
-        let hidden = self.hidden_at(event.guard, place);
-        let slope = self.slope_beyond(event.guard, place, (hidden, slope));
-        let error = (ADDED * hidden + event.residual) / slope;
+        let hidden = self.hidden_at(guard, place);
+        let slope = self.slope_beyond(guard, place, (hidden, slope));
+        let error = (ADDED * hidden + residual) / slope;
         drift + if error.is_finite() { error } else { 0.0 }
     }
 
@@ -76,8 +85,8 @@ impl<S: System> Examination<'_, S> {
                 self.room.value(system, at, s + ahead, &moved)
             };
             let seen = ((value(reach) - value(-reach)) / (2.0 * reach)).abs();
-            // Written so that NaN ends the search.
-            if !(seen < 0.5 * slope) {
+            // NaN ends the search.
+            if seen.is_nan() || seen >= 0.5 * slope {
                 break;
             }
             slope = seen.max(slope / LEAVES);

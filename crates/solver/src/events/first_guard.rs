@@ -10,6 +10,7 @@ use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
 use crate::events::phase::Phase;
 use crate::events::quick::{self, NODES};
+use crate::events::sidestep::resolution;
 use crate::events::status::{Crossing, Status};
 use crate::hybrid::{Direction, Statistics};
 use crate::lists::List;
@@ -137,7 +138,8 @@ impl<S: System> Examination<'_, S> {
                 }
             };
             self.room.give(ahead);
-            let theta = 2.0 * reach / step.h;
+            // Closer to the start, signs are rounding.
+            let theta = 2.0 * (reach / step.h + resolution(step.s, step.h));
             if passes && theta < 1.0 {
                 beginnings[guard] = Beginning { theta, value: -value, zero_order: 0 };
                 statuses[guard] = Status::Unclear;

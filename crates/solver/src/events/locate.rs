@@ -3,13 +3,13 @@
 //! The dense output only gives the place to begin. Each iteration takes a step from the same start
 //! to a trial place. So a switch is as accurate as any other point of the run.
 
+mod rise;
+
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
-use crate::events::arrival::SHOWS;
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
-use crate::events::quick::NODES;
 use crate::events::sidestep::{Sidestep, resolution};
 use crate::events::status::Crossing;
 use crate::method::{Method, StepOf, Store};
@@ -18,10 +18,6 @@ use crate::system::{Room, System};
 /// The largest distance from the end of a repeated step to the switch, as a part of the step, that
 /// the midpoint rule bridges. Its error is the cube of this part, which is below rounding.
 pub(crate) const BRIDGE: f64 = 1e-5;
-/// A guard that is back on its zero within this part of the time may not have risen visibly.
-const SOON: f64 = 1e-6;
-/// A second difference that is so many times what rounding hides shows a second derivative.
-const SEEN: f64 = 1_048_576.0;
 /// A switch whose distance from the start of its step is below this part of the time counts as a
 /// switch at the start.
 pub(crate) const NOWHERE: f64 = 1e-20;
@@ -77,23 +73,10 @@ impl<S: System> Examination<'_, S> {
         {
             return at_start(start, slope);
         }
-        let from_zero = self.phase.zero_orders[guard] > 0 && self.notes_of(guard).next().is_none();
-        let soon = theta < NODES[1] || theta * step.h <= SOON * step.s.abs().max(self.usual);
-        if theta == 0.0 || from_zero && soon {
-            match self.behind_zero::<M>(step, (guard, sign), theta) {
-                Some(shown) => low = low.max(shown),
-                None => {
-                    let Some((elapsed, slope)) = self.returns(step, (guard, sign)) else {
-                        return at_start(start, 0.0);
-                    };
-                    let trial = self.restep::<M>(step, elapsed.min(step.h));
-                    let (state, jump) = (trial.y1.clone(), false);
-                    let residual = self.room.value(system, (mode, guard), trial.s + trial.h, &state);
-                    let landing = Landing { elapsed: trial.h, state, residual, slope, jump };
-                    return Ok(Some(event(landing, trial)));
-                }
-            }
-        }
+        let Some(shown) = self.rise_before::<M>(step, guard, crossing) else {
+            return Ok(Some(self.unseen::<M>(step, (guard, sign), beyond)));
+        };
+        low = low.max(shown);
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
         let width = room((low, high), theta) * step.h;
         let (mut last_value, resolution) = (f64::INFINITY, resolution(step.s, step.h));
@@ -170,80 +153,6 @@ impl<S: System> Examination<'_, S> {
             last_value = end.value.abs();
             theta = if progress && next > low && next < high { next } else { 0.5 * (low + high) };
         }
-    }
-
-    /// A step fraction at which `sign` times a guard shows that it has risen from its zero at the
-    /// start of `step`, before the crossing that is expected near `theta`. Closer to the start,
-    /// signs are rounding. The result is `None` if rounding hides all of the rise.
-    fn behind_zero<M: Method>(
-        &mut self,
-        step: &StepOf<S::State>,
-        (guard, sign): (usize, f64),
-        theta: f64,
-    ) -> Option<f64> {
-        let (system, mode, reach) = (self.system, self.phase.mode, 0.0);
-        let near = Near { system, mode, guard, sign, reach };
-        let shortest = resolution(step.s, step.h);
-        let (mut place, mut highest) = ((0.5 * theta).max(shortest), 1.0);
-        while place < highest && place >= shortest {
-            let trial = self.restep::<M>(step, place * step.h);
-            let s = trial.s + trial.h;
-            let value = near.value(s, &trial.y1, self.room);
-            let hidden = 4.0 * near.rounding(s, &trial.y1, self.room);
-            self.room.give_step(trial);
-            if value > hidden {
-                return Some(place);
-            }
-            if value < -hidden {
-                highest = place;
-                place *= 0.25;
-            } else {
-                place *= 4.0;
-            }
-        }
-        None
-    }
-
-    /// The time after which `sign` times a guard is back on the zero from which it rises at the start
-    /// of `step`, by its first two derivatives, and its slope there. Rounding hides its values, but
-    /// not its derivatives, which differences over a longer way show.
-    fn returns(
-        &mut self,
-        step: &StepOf<S::State>,
-        (guard, sign): (usize, f64),
-    ) -> Option<(f64, f64)> {
-        let (system, mode, s, y) = (self.system, self.phase.mode, step.s, &step.y0);
-        let near = Near { system, mode, guard, sign, reach: 0.0 };
-        let hidden = near.rounding(s, y, self.room);
-        let (mut slope, mut ahead, mut moved) =
-            (self.room.state(), self.room.state(), self.room.state());
-        system.field(mode, s, y, &mut slope);
-        let start = near.value(s, y, self.room);
-        let (room, statistics) = (&mut *self.room, &mut *self.statistics);
-        let mut value = |by: f64| {
-            S::State::shifted(&mut moved, y, &slope, by);
-            system.field(mode, s + by, &moved, &mut ahead);
-            moved.shift(&ahead, 0.5 * by);
-            moved.shift(&slope, -0.5 * by);
-            statistics.field += 1;
-            statistics.guards += 1;
-            near.value(s + by, &moved, room)
-        };
-        let mut reach = SHOWS * self.drift;
-        let mut found = None;
-        while found.is_none() && reach > 0.0 && reach <= step.h {
-            let (behind, before) = (value(reach), value(-reach));
-            let bend = behind + before - 2.0 * start;
-            if bend.abs() > SEEN * hidden {
-                found = Some((0.5 * (behind - before) / reach, bend / (reach * reach)));
-            }
-            reach *= 4.0;
-        }
-        for state in [slope, ahead, moved] {
-            self.room.give(state);
-        }
-        let (rate, bend) = found?;
-        (rate > 0.0 && bend < 0.0).then(|| (-2.0 * rate / bend, rate))
     }
 
     /// The slope of a guard that is zero at the start of `step` and falls from there.

@@ -1,6 +1,6 @@
 //! Events that only report a crossing, since nothing changes there: a step is not cut at them.
 
-use crate::events::event::{Event, Note, only};
+use crate::events::event::{Crossed, Event, Note, only};
 use crate::events::examination::Examination;
 use crate::hybrid::Direction;
 use crate::lists::List;
@@ -63,9 +63,12 @@ impl<S: System> Examination<'_, S> {
         }
         let s = self.trial.s + event.elapsed;
         let since = s - 2.0 * self.error_of(event) - 8.0 * f64::EPSILON * s.abs();
+        let mut notes = std::mem::take(self.notes);
         let phase = self.phase;
-        self.notes.retain_mut(|note| {
-            if note.s < since {
+        notes.retain_mut(|note| {
+            let crossed = note.crossed[note.guard].unwrap_or(Crossed::AT_ONCE);
+            let place = (&event.step, note.s - self.trial.s, &note.before);
+            if note.s < since - self.error_at((note.guard, crossed), place, 0.0) {
                 return true;
             }
             let mut first: Option<usize> = None;
@@ -89,5 +92,6 @@ impl<S: System> Examination<'_, S> {
             }
             true
         });
+        *self.notes = notes;
     }
 }

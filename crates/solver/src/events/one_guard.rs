@@ -12,8 +12,8 @@ use crate::events::arrival::SAME;
 use crate::events::by_bounds::Sight;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
-    Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_enclosed_sign,
-    last_sign, noise,
+    Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing,
+    last_enclosed_sign, last_sign, noise,
 };
 use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
@@ -149,7 +149,7 @@ impl<S: System> Examination<'_, S> {
         let comes_back = self.phase.guards[guard].direction().fires_from(rate)
             && first_side(self.system, at, step, self.statistics, self.room) == -rate;
         let bracket = Bracket { low: 0.0, high: 1.0, guess: 0.0 };
-        Ok(comes_back.then(|| Status::Fires(Crossing { sign: rate, bracket })))
+        Ok(comes_back.then_some(Status::Fires(Crossing { sign: rate, bracket })))
     }
 
     /// Decides about a guard whose zero at the start is certain, if it is said to have one.

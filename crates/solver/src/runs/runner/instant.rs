@@ -29,6 +29,14 @@ struct Pending<Mode> {
     guard: Guard,
 }
 
+/// A guard has acted in a mode, and led to another one.
+#[derive(Clone, Copy)]
+struct Transition<Mode> {
+    from: Mode,
+    guard: usize,
+    to: Mode,
+}
+
 /// What is known about the guards at one instant, by their places.
 pub(super) struct Instant<S: System> {
     pending: PerGuard<S, Option<Pending<S::Mode>>>,
@@ -36,8 +44,7 @@ pub(super) struct Instant<S: System> {
     acted: PerGuard<S, Option<(S::Mode, Crossed)>>,
     /// The state before the first transition.
     origin: S::State,
-    /// The transitions so far: modes, guards, and the modes to which they lead.
-    transitions: SmallVec<[(S::Mode, usize, S::Mode); 4]>,
+    transitions: SmallVec<[Transition<S::Mode>; 4]>,
     /// The last modes and guards of a chain that comes close to the limit.
     chain: Vec<(S::Mode, usize)>,
 }
@@ -199,7 +206,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.room.guards = self.phase.count();
         self.statistics.guards += 1;
         self.instant.acted[guard] = Some((from, crossed));
-        self.instant.transitions.push((from, guard, to));
+        self.instant.transitions.push(Transition { from, guard, to });
         let count = self.phase.count().max(self.instant.pending.parts().len());
         self.instant.pending.fit(count, None);
         self.instant.acted.fit(count, None);
@@ -372,12 +379,12 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// and everything had acted there as it has.
     fn unsettled(&mut self, guard: usize) -> f64 {
         let (system, late) = (self.system, self.clock.s + self.clock.drift());
-        let Some(&(mode, ..)) = self.instant.transitions.first() else { return 0.0 };
+        let Some(&Transition { from, .. }) = self.instant.transitions.first() else { return 0.0 };
         let (mut slope, mut y) = (self.room.state(), self.room.state());
-        system.field(mode, self.clock.s, &self.instant.origin, &mut slope);
+        system.field(from, self.clock.s, &self.instant.origin, &mut slope);
         S::State::shifted(&mut y, &self.instant.origin, &slope, late - self.clock.s);
         let mut acts = self.instant.transitions.iter();
-        let same = acts.all(|&(from, by, to)| system.transition(from, by, late, &mut y) == to);
+        let same = acts.all(|it| system.transition(it.from, it.guard, late, &mut y) == it.to);
         let value = self.room.value(system, (self.phase.mode, guard), late, &y);
         self.statistics.field += 1;
         self.statistics.guards += 1;

@@ -1,0 +1,137 @@
+//! A guard that rises from its zero at the start of a step, and comes back before rounding shows
+//! that it has risen: a ball that hops by less than the rounding of its height.
+//!
+//! Its values say nothing about when it comes back, but its first two derivatives do. A transition
+//! that finds the ball on its way up would turn its velocity through the floor.
+
+use crate::events::arrival::SHOWS;
+use crate::events::event::{Crossed, Event};
+use crate::events::examination::Examination;
+use crate::events::locate::Near;
+use crate::events::quick::NODES;
+use crate::events::sidestep::resolution;
+use crate::events::status::Crossing;
+use crate::method::{Method, StepOf, Store};
+use crate::system::System;
+
+/// A second difference that is so many times what rounding hides shows a second derivative.
+const SEEN: f64 = 1_048_576.0;
+
+/// A guard that is back on its zero within this part of the time may not have risen visibly.
+const SOON: f64 = 1e-6;
+
+impl<S: System> Examination<'_, S> {
+    /// A step fraction before a crossing, up to which a guard that starts from a zero shows that it
+    /// has risen. It is looked for only if the crossing is so close that rounding may hide the rise.
+    /// The result is `None` if it does.
+    pub(super) fn rise_before<M: Method>(
+        &mut self,
+        step: &StepOf<S::State>,
+        guard: usize,
+        crossing: &Crossing,
+    ) -> Option<f64> {
+        let theta = crossing.bracket.guess;
+        let soon = theta < NODES[1] || theta * step.h <= SOON * step.s.abs().max(self.usual);
+        let from_zero = self.phase.zero_orders[guard] > 0 && self.notes_of(guard).next().is_none();
+        if theta == 0.0 || from_zero && soon {
+            self.rise_shows::<M>(step, (guard, crossing.sign), theta)
+        } else {
+            Some(0.0)
+        }
+    }
+
+    /// A step fraction at which `sign` times a guard shows that it has risen from its zero at the
+    /// start of `step`, before the crossing that is expected near `theta`. Closer to the start,
+    /// signs are rounding. The result is `None` if rounding hides all of the rise.
+    fn rise_shows<M: Method>(
+        &mut self,
+        step: &StepOf<S::State>,
+        (guard, sign): (usize, f64),
+        theta: f64,
+    ) -> Option<f64> {
+        let (system, mode, reach) = (self.system, self.phase.mode, 0.0);
+        let near = Near { system, mode, guard, sign, reach };
+        let shortest = resolution(step.s, step.h);
+        let (mut place, mut highest) = ((0.5 * theta).max(shortest), 1.0);
+        while place < highest && place >= shortest {
+            let trial = self.restep::<M>(step, place * step.h);
+            let s = trial.s + trial.h;
+            let value = near.value(s, &trial.y1, self.room);
+            let hidden = 4.0 * near.rounding(s, &trial.y1, self.room);
+            self.room.give_step(trial);
+            if value > hidden {
+                return Some(place);
+            }
+            if value < -hidden {
+                highest = place;
+                place *= 0.25;
+            } else {
+                place *= 4.0;
+            }
+        }
+        None
+    }
+
+    /// The time after which `sign` times a guard is back on the zero from which it rises at the start
+    /// of `step`, by its first two derivatives, and its slope there. Rounding hides its values, but
+    /// not its derivatives, which differences over a longer way show.
+    fn returns(
+        &mut self,
+        step: &StepOf<S::State>,
+        (guard, sign): (usize, f64),
+    ) -> Option<(f64, f64)> {
+        let (system, mode, s, y) = (self.system, self.phase.mode, step.s, &step.y0);
+        let near = Near { system, mode, guard, sign, reach: 0.0 };
+        let hidden = near.rounding(s, y, self.room);
+        let (mut slope, mut ahead, mut moved) =
+            (self.room.state(), self.room.state(), self.room.state());
+        system.field(mode, s, y, &mut slope);
+        let start = near.value(s, y, self.room);
+        let (room, statistics) = (&mut *self.room, &mut *self.statistics);
+        let mut value = |by: f64| {
+            S::State::shifted(&mut moved, y, &slope, by);
+            system.field(mode, s + by, &moved, &mut ahead);
+            moved.shift(&ahead, 0.5 * by);
+            moved.shift(&slope, -0.5 * by);
+            statistics.field += 1;
+            statistics.guards += 1;
+            near.value(s + by, &moved, room)
+        };
+        let mut reach = SHOWS * self.drift;
+        let mut found = None;
+        while found.is_none() && reach > 0.0 && reach <= step.h {
+            let (behind, before) = (value(reach), value(-reach));
+            let bend = behind + before - 2.0 * start;
+            if bend.abs() > SEEN * hidden {
+                found = Some((0.5 * (behind - before) / reach, bend / (reach * reach)));
+            }
+            reach *= 4.0;
+        }
+        for state in [slope, ahead, moved] {
+            self.room.give(state);
+        }
+        let (rate, bend) = found?;
+        (rate > 0.0 && bend < 0.0).then(|| (-2.0 * rate / bend, rate))
+    }
+
+    /// The event of a guard that comes back to its zero unseen.
+    pub(super) fn unseen<M: Method>(
+        &mut self,
+        step: &StepOf<S::State>,
+        (guard, sign): (usize, f64),
+        beyond: f64,
+    ) -> Event<S> {
+        let (elapsed, slope) = self.returns(step, (guard, sign)).unwrap_or((0.0, 0.0));
+        let trial = if elapsed > 0.0 {
+            self.restep::<M>(step, elapsed.min(step.h))
+        } else {
+            step.shrunk_to_start()
+        };
+        let (system, at, s) = (self.system, (self.phase.mode, guard), trial.s + trial.h);
+        let (elapsed, state) = (trial.h, trial.y1.clone());
+        let residual = self.room.value(system, at, s, &state).abs();
+        let crossed = Crossed { slope, jump: false, sign };
+        let alone = Event::alone((guard, self.phase.count()), crossed, (elapsed, state), trial);
+        Event { residual, beyond, ..alone }
+    }
+}
