@@ -349,8 +349,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             };
             let hidden = self.hidden(event, guard);
             let away = value.abs().min((value - left).abs());
-            // What is hidden is some roundings of the terms of the guard.
-            let near = away <= NEAR_ZERO / f64::EPSILON * hidden;
+            // A transition makes an error of time larger, but not so much.
+            let slope = crossed.map_or(f64::INFINITY, |(_, crossed)| crossed.slope);
+            let near = NEAR_ZERO * away <= hidden + slope * self.clock.drift();
             if away <= hidden || near && away <= hidden + self.unsettled(guard) {
                 self.phase.forgive(guard);
             }
