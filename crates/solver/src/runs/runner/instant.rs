@@ -10,7 +10,6 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
-use crate::events::first_guard::TOGETHER;
 use crate::events::phase::NEAR_ZERO;
 use crate::events::{Crossed, Event, Note, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
@@ -120,7 +119,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
         // What has just been noted on this step is of this instant too.
         let rounding = HIDES * self.clock.drift();
-        let since = self.clock.s - rounding.max(TOGETHER * event.step.h);
+        let since = self.clock.s - rounding;
         for note in self.notes.iter().filter(|note| note.s >= since) {
             let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
             for guard in (0..count).filter(noted) {
