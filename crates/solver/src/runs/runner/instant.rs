@@ -52,8 +52,8 @@ pub(super) struct Instant<S: System> {
 /// is tried, and about the last.
 const CLOSE: f64 = 1e-6;
 const FAR: f64 = 1e-2;
-/// A guard that goes no farther in a phase than so many times what rounding hides does not know when
-/// it comes back.
+/// Rounding decides when a guard comes back that goes no farther in a phase than so many times what
+/// rounding hides.
 const CONFUSES: f64 = 16.0;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
 const HIDES: f64 = 16.0;
