@@ -50,17 +50,22 @@ impl<S: System> Examination<'_, S> {
         }
     }
 
-    /// Adds the clocks that are `due` at the end of `step` to the event, if it does not come
-    /// before.
-    pub(crate) fn tick(&mut self, step: &StepOf<S::State>, due: f64, event: &mut Option<Event<S>>) {
+    /// Adds the clocks that are `due`, after the time `left`, to the event on `step`, if it does not
+    /// come before. If there is no event, they are due at the end of the step.
+    pub(crate) fn tick(
+        &mut self,
+        step: &StepOf<S::State>,
+        (due, left): (f64, f64),
+        event: &mut Option<Event<S>>,
+    ) {
         if let Some(first) = event {
             let rounding = 4.0 * f64::EPSILON * due.abs().max(step.s.abs());
             let latest = first.latest.unwrap_or_else(|| first.elapsed + self.error_of(first));
-            if step.h > latest + rounding {
+            if left > latest + rounding {
                 return;
             }
             // The clock knows the time of the instant exactly.
-            first.elapsed = step.h;
+            first.elapsed = left;
         }
         let mode = self.phase.mode;
         for guard in (0..self.phase.count()).filter(|&guard| self.phase.is_clock(guard)) {
@@ -68,7 +73,7 @@ impl<S: System> Examination<'_, S> {
                 continue;
             }
             let crossed = Crossed { slope: 1.0, jump: false, sign: 1.0 };
-            let tick = self.at_end(guard, crossed, step);
+            let tick = Event { elapsed: left, ..self.at_end(guard, crossed, step) };
             *event = Some(match event.take() {
                 None => tick,
                 Some(first) => self.merged(first, tick),

@@ -4,12 +4,13 @@ use crate::events::along_step::{rounding, scales};
 use crate::events::arrival::HERE;
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
-use crate::events::first_guard::TOGETHER;
 use crate::events::isolate::noise;
 use crate::events::phase::NEAR_ZERO;
 use crate::method::{StepOf, Store};
 use crate::system::System;
 
+/// A guard is zero at an event if its value there is below this part of its values before.
+pub(crate) const TOGETHER: f64 = 1e-12;
 /// The part of a step on which the noise of a guard is measured.
 const CLOSE: f64 = 1e-6;
 /// The part of what surely exceeds noise that it may well be.

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::by_bounds::Sight;
-use crate::events::doubt::ADDED;
+use crate::events::doubt::{ADDED, TOGETHER};
 use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
@@ -17,8 +17,6 @@ use crate::lists::List;
 use crate::method::{Method, StepOf, Store};
 use crate::system::{PerGuard, Room, System};
 
-/// A guard is zero at an event if its value there is below this part of its values before.
-pub(crate) const TOGETHER: f64 = 1e-12;
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 pub(crate) const UNSEEN: f64 = 16.0;
 /// A guard that starts from a zero needs at most this many roundings of time to cross it.
@@ -397,6 +395,9 @@ impl<S: System> Examination<'_, S> {
                 && let place = (&event.step, event.elapsed, &event.state)
                 && let Some(crossed) = self.arrival(guard, place, ADDED, Some(event))
             {
+                if event.latest.is_none() {
+                    event.latest = Some(event.elapsed + self.error_of(event));
+                }
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {
                     event.guard = guard;

@@ -300,8 +300,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 if event.step.h > 0.0 {
                     self.show::<M>(mode, &mut event.step);
                 }
+                let arrives = event.elapsed == self.clock.until(stop);
                 self.clock.advance(event.elapsed);
-                if last && event.elapsed == h {
+                if arrives {
                     self.clock.arrive(stop);
                 }
                 return Ok(None);
@@ -394,8 +395,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         if last && event.is_none() {
             examination.arrive(step, event);
         }
-        if last && self.due <= self.end {
-            examination.tick(step, self.due, event);
+        let left = self.clock.until(self.due);
+        if self.due <= self.end && (last || event.is_some() && left <= 2.0 * h) {
+            examination.tick(step, (self.due, left), event);
         }
         if let Some(event) = event {
             examination.take_back(event);
@@ -433,7 +435,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             notices: &mut self.notices,
             room: &mut self.room,
         };
-        examination.tick(step, self.due, event);
+        examination.tick(step, (self.due, 0.0), event);
     }
 
     /// Shows an accepted step to the observer, if it wants to see steps.

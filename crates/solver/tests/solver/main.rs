@@ -26,6 +26,7 @@
 //! | `serialization` | the JSON of results |
 
 mod black_box;
+mod chatter;
 mod checks;
 mod dynamic;
 mod enclosures;

@@ -15,8 +15,10 @@ use crate::method::{Method, StepOf, Store};
 use crate::system::System;
 
 /// A second difference that is so many times what rounding hides shows a second derivative.
-const SEEN: f64 = 1_048_576.0;
+const SEEN: f64 = 16_384.0;
 
+/// The part of the time over which derivatives may be differenced, however short the step is.
+const LONGEST: f64 = 1e-4;
 /// A guard that is back on its zero within this part of the time may not have risen visibly.
 const SOON: f64 = 1e-6;
 
@@ -99,7 +101,8 @@ impl<S: System> Examination<'_, S> {
         };
         let mut reach = SHOWS * self.drift;
         let mut found = None;
-        while found.is_none() && reach > 0.0 && reach <= step.h {
+        let longest = step.h.max(self.usual).max(LONGEST * s.abs());
+        while found.is_none() && reach > 0.0 && reach <= longest {
             let (behind, before) = (value(reach), value(-reach));
             let bend = behind + before - 2.0 * start;
             if bend.abs() > SEEN * hidden {
@@ -111,7 +114,10 @@ impl<S: System> Examination<'_, S> {
             self.room.give(state);
         }
         let (rate, bend) = found?;
-        (rate > 0.0 && bend < 0.0).then(|| (-2.0 * rate / bend, rate))
+        // It is surely on its way back where rounding shows that it is beyond zero.
+        let beyond = (2.0 * hidden / -bend).sqrt();
+        let elapsed = (-2.0 * rate / bend).max(beyond);
+        (bend < 0.0).then(|| (elapsed, (rate + bend * elapsed).abs()))
     }
 
     /// The event of a guard that comes back to its zero unseen.

@@ -10,7 +10,6 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
-use crate::events::first_guard::TOGETHER;
 use crate::events::phase::NEAR_ZERO;
 use crate::events::{Crossed, Event, Note, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
@@ -53,8 +52,8 @@ pub(super) struct Instant<S: System> {
 /// is tried, and about the last.
 const CLOSE: f64 = 1e-6;
 const FAR: f64 = 1e-2;
-/// A guard that goes no farther in a phase than so many times what rounding hides does not know when
-/// it comes back.
+/// Rounding decides when a guard comes back that goes no farther in a phase than so many times what
+/// rounding hides.
 const CONFUSES: f64 = 16.0;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
 const HIDES: f64 = 16.0;
@@ -120,7 +119,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
         // What has just been noted on this step is of this instant too.
         let rounding = HIDES * self.clock.drift();
-        let since = self.clock.s - rounding.max(TOGETHER * event.step.h);
+        let since = self.clock.s - rounding;
         for note in self.notes.iter().filter(|note| note.s >= since) {
             let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
             for guard in (0..count).filter(noted) {
@@ -349,8 +348,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             };
             let hidden = self.hidden(event, guard);
             let away = value.abs().min((value - left).abs());
-            // What is hidden is some roundings of the terms of the guard.
-            let near = away <= NEAR_ZERO / f64::EPSILON * hidden;
+            // A transition makes an error of time larger, but not so much.
+            let slope = crossed.map_or(f64::INFINITY, |(_, crossed)| crossed.slope);
+            let near = NEAR_ZERO * away <= hidden + slope * self.clock.drift();
             if away <= hidden || near && away <= hidden + self.unsettled(guard) {
                 self.phase.forgive(guard);
             }
