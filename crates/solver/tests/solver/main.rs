@@ -19,6 +19,7 @@
 //! | `instants`, `planted_instants` | random systems whose events coincide, exactly or nearly |
 //! | `reports` | systems from public reports about the events of other tools |
 //! | `strangers` | systems that nobody here designed for |
+//! | `chatter` | a ball whose hops become smaller than rounding |
 //! | `dynamic` | systems whose dimension is known at run time |
 //! | `erased` | runs along any system as runs along one type, so that they are compiled once |
 //! | `black_box` | systems that can be read as black boxes |
