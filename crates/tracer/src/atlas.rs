@@ -309,3 +309,30 @@ pub(crate) fn doubtful<Label, Margin>(
     }
     doubtful
 }
+
+impl Effort {
+    /// Options with this effort, from those with the usual one.
+    #[must_use]
+    pub fn applied(self, usual: AtlasOptions) -> AtlasOptions {
+        let AtlasOptions { trace, verify, rounds, .. } = usual;
+        let (cells, random_points, near_points, rounds) = match self {
+            Self::Screen => {
+                let near_points = verify.near_points.div_ceil(5);
+                ((trace.cells / 2).max(2), verify.random_points.div_ceil(40), near_points, 1)
+            }
+            Self::Default => (trace.cells, verify.random_points, verify.near_points, rounds),
+            Self::Certain => {
+                let [random, near] = [verify.random_points, verify.near_points];
+                let cells = (2 * trace.cells).min(TraceOptions::MOST_CELLS);
+                (cells, random.saturating_mul(5), near.saturating_mul(5), 2 * rounds)
+            }
+        };
+        AtlasOptions {
+            effort: self,
+            trace: TraceOptions { cells, ..trace },
+            verify: VerifyOptions { random_points, near_points, ..verify },
+            rounds,
+            ..usual
+        }
+    }
+}

@@ -50,8 +50,8 @@ impl<S: System> Examination<'_, S> {
         }
     }
 
-    /// Adds the clocks that are `due`, after the time `left`, to the event on `step`, if it does not
-    /// come before. If there is no event, they are due at the end of the step.
+    /// Adds the clocks that are `due`, after the time `left`, to the event on `step`, unless that
+    /// comes before. If there is no event, they are due at the end of the step.
     pub(crate) fn tick(
         &mut self,
         step: &StepOf<S::State>,

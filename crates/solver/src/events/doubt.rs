@@ -65,8 +65,8 @@ impl<S: System> Examination<'_, S> {
         NEAR_ZERO.max(16.0 * self.drift(elapsed) / elapsed)
     }
 
-    /// The slope of a guard where it leaves what rounding hides. Over a longer way, the slope may be
-    /// quite another one, such as the one that is taken for a `guess`.
+    /// The slope of a guard where it leaves what rounding hides. Over a longer way, it may be quite
+    /// another one, such as the one that is taken for a `guess`.
     pub(crate) fn slope_beyond(
         &mut self,
         guard: usize,

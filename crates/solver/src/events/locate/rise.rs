@@ -24,7 +24,7 @@ const SOON: f64 = 1e-6;
 
 impl<S: System> Examination<'_, S> {
     /// A step fraction before a crossing, up to which a guard that starts from a zero shows that it
-    /// has risen. It is looked for only if the crossing is so close that rounding may hide the rise.
+    /// has risen. It is looked for only where the crossing is so close that rounding may hide that.
     /// The result is `None` if it does.
     pub(super) fn rise_before<M: Method>(
         &mut self,
@@ -74,8 +74,8 @@ impl<S: System> Examination<'_, S> {
         None
     }
 
-    /// The time after which `sign` times a guard is back on the zero from which it rises at the start
-    /// of `step`, by its first two derivatives, and its slope there. Rounding hides its values, but
+    /// The time after which `sign` times a guard is back on the zero from which it rises where `step`
+    /// starts, by its first two derivatives, and its slope there. Rounding hides its values, but
     /// not its derivatives, which differences over a longer way show.
     fn returns(
         &mut self,
