@@ -74,7 +74,7 @@ impl<S: System> Examination<'_, S> {
         None
     }
 
-    /// The time after which `sign` times a guard is back on the zero from which it rises where `step`
+    /// The time after which `sign` times a guard is back on the zero from which it rises as `step`
     /// starts, by its first two derivatives, and its slope there. Rounding hides its values, but
     /// not its derivatives, which differences over a longer way show.
     fn returns(
