@@ -49,7 +49,7 @@ fn mistakes_are_answers() {
     assert!(
         ask(&mut state, &json!({ "do": "collision", "x": -1.0, "y": 1.0 }))["error"].is_string()
     );
-    assert_eq!(state.course([0.0, 1.0], 10), 0);
+    assert_eq!(state.course([-1.0, 1.0], 10), 0);
     assert!(!state.text.is_empty());
     let wrong = ask(&mut state, &json!({ "do": "parse", "text": "state x = 1\nx' = y" }));
     assert_eq!((&wrong["line"], &wrong["column"]), (&json!(2), &json!(6)));

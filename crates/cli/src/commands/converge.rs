@@ -31,7 +31,7 @@ pub struct ConvergeArguments {
 
     /// Scaled stiffness κ of one collision, instead of the usual 38; above 0, at most 10⁶
     #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
+    #[arg(value_parser = |text: &str| Parameter::Kappa.parse_positive(text))]
     pub kappa: Option<f64>,
 
     /// Impact ratio g_t/g_n of that collision; above 0; gives ψ = G·α/μ

@@ -96,7 +96,10 @@ fn a_row_that_cannot_be_computed_does_not_stop_the_others() {
                 "line 3: psi = 'abc': not a number; expected a finite number above 0, {written}"
             ),
         ),
-        ("c", format!("line 4: kappa = '': empty; expected a finite number above 0, {written}")),
+        (
+            "c",
+            format!("line 4: kappa = '': empty; expected a finite number, 0 or above, {written}"),
+        ),
         ("d", "line 6: psi = '-1': out of range; expected a finite number above 0".to_owned()),
         (
             "e\ne",

@@ -130,6 +130,7 @@ fn json_has_the_documented_keys_in_order() {
             "work_of_wall",
             "sliding",
             "damping",
+            "tangential_damping",
             "spring_left",
             "compression_left",
             "unbalanced"

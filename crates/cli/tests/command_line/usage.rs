@@ -14,12 +14,12 @@ fn refused(line: &str, parts: &[&str]) {
 
 #[test]
 fn every_parameter_out_of_range() {
-    let positive = "a finite number above 0";
+    let (positive, or_zero) = ("a finite number above 0", "a finite number, 0 or above");
     for (option, others, expected, bad) in [
-        ("--kappa", "--psi 1", positive, &["0", "-1", "-0", "inf", "-inf", "nan", "1e400"][..]),
+        ("--kappa", "--psi 1", or_zero, &["-1", "inf", "-inf", "nan", "1e400"][..]),
         ("--psi", "--kappa 1", positive, &["0", "-2/7", "inf", "nan", "2/0", "abc", "1e-400"]),
         ("--ratio", "--kappa 1", positive, &["0", "-1", "inf", "nan", "1/2/3", "0x1"]),
-        ("--mu", "--kappa 1 --ratio 1", positive, &["0", "-0.4", "inf", "nan", "1,5"]),
+        ("--mu", "--kappa 1 --ratio 1", or_zero, &["-0.4", "inf", "nan", "1,5"]),
         (
             "--alpha",
             "--kappa 1 --ratio 1",

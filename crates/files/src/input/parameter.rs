@@ -52,6 +52,15 @@ impl Parameter {
         checked(text, &self.expected(), |value| self.check(value).is_ok())
     }
 
+    /// The value in `text`, which must be above 0: what vanishes there has no limit to compare.
+    ///
+    /// # Errors
+    /// The text is not a number above 0 in the parameter's range.
+    pub fn parse_positive(self, text: &str) -> Result<f64, String> {
+        let accepts = |value: f64| value > 0.0 && self.check(value).is_ok();
+        checked(text, "a finite number above 0", accepts)
+    }
+
     /// `value`, if it is in the parameter's range. The model decides on the ranges that it knows.
     ///
     /// # Errors

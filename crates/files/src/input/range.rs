@@ -63,8 +63,8 @@ pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange
     if text.contains(':') {
         return parse_for(parameter, text).map(OneOrRange::Range);
     }
-    let value = parameter.parse(text).map_err(|problem| format!("{problem}, or an interval LO:HI"));
-    value.map(OneOrRange::One)
+    let value = parameter.parse_positive(text).map(OneOrRange::One);
+    value.map_err(|problem| format!("{problem}, or an interval LO:HI"))
 }
 
 /// Reads an interval `LO:HI`, which may begin at 0.
