@@ -3,6 +3,7 @@
 
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
+use crate::events::quick::NODES;
 use crate::method::{StepOf, Store};
 use crate::system::System;
 
@@ -106,9 +107,14 @@ impl<S: System> Examination<'_, S> {
         let (system, mode, s) = (self.system, self.phase.mode, step.s + elapsed);
         let there = self.room.value(system, (mode, guard), s, y);
         self.statistics.guards += 1;
-        let largest = self.phase.largest[guard];
-        if largest > 0.0 && there.abs() > self.near_zero(elapsed) * largest {
-            return None;
+        let (largest, near) = (self.phase.largest[guard], self.near_zero(elapsed));
+        if largest > 0.0 && there.abs() > near * largest {
+            // The phase may have begun at a zero.
+            let (s, y) = (step.s + NODES[2] * step.h, &step.interior[1]);
+            self.statistics.guards += 1;
+            if there.abs() > near * self.room.value(system, (mode, guard), s, y).abs() {
+                return None;
+            }
         }
         let hidden = self.hidden_at(guard, (step, elapsed, y));
         let shortest = SHOWS * self.drift(elapsed);

@@ -14,6 +14,8 @@ use crate::events::status::Crossing;
 use crate::method::{Method, StepOf, Store};
 use crate::system::System;
 
+/// Where it is looked for between a zero and a crossing.
+const WITHIN: [f64; 3] = [0.5, 0.29, 0.83];
 /// A second difference that is so many times what rounding hides shows a second derivative.
 const SEEN: f64 = 16_384.0;
 
@@ -51,27 +53,39 @@ impl<S: System> Examination<'_, S> {
         (guard, sign): (usize, f64),
         theta: f64,
     ) -> Option<f64> {
-        let (system, mode, reach) = (self.system, self.phase.mode, 0.0);
-        let near = Near { system, mode, guard, sign, reach };
         let shortest = resolution(step.s, step.h);
-        let (mut place, mut highest) = ((0.5 * theta).max(shortest), 1.0);
-        while place < highest && place >= shortest {
-            let trial = self.restep::<M>(step, place * step.h);
-            let s = trial.s + trial.h;
-            let value = near.value(s, &trial.y1, self.room);
-            let hidden = 4.0 * near.rounding(s, &trial.y1, self.room);
-            self.room.give_step(trial);
-            if value > hidden {
-                return Some(place);
+        // What rounding does not hide in between has been isolated.
+        for part in WITHIN {
+            let place = part * theta;
+            if place >= shortest && self.shows::<M>(step, (guard, sign), place) != 0.0 {
+                return Some(0.0);
             }
-            if value < -hidden {
-                highest = place;
-                place *= 0.25;
-            } else {
-                place *= 4.0;
+        }
+        let mut place = theta.max(shortest);
+        while place < 1.0 {
+            match self.shows::<M>(step, (guard, sign), place) {
+                0.0 => place *= 4.0,
+                side => return (side > 0.0).then_some(place),
             }
         }
         None
+    }
+
+    /// The sign of `sign` times a guard at a place of `step`, or 0 if rounding hides it.
+    fn shows<M: Method>(
+        &mut self,
+        step: &StepOf<S::State>,
+        (guard, sign): (usize, f64),
+        place: f64,
+    ) -> f64 {
+        let (system, mode, reach) = (self.system, self.phase.mode, 0.0);
+        let near = Near { system, mode, guard, sign, reach };
+        let trial = self.restep::<M>(step, place * step.h);
+        let s = trial.s + trial.h;
+        let value = near.value(s, &trial.y1, self.room);
+        let hidden = 4.0 * near.rounding(s, &trial.y1, self.room);
+        self.room.give_step(trial);
+        if value.abs() > hidden { value.signum() } else { 0.0 }
     }
 
     /// The time after which `sign` times a guard is back on the zero from which it rises as `step`
