@@ -540,7 +540,7 @@ def test_one_boundary_with_monitors() -> None:
         family.follow(HEIGHTS, RESTITUTIONS, between, options=TraceOptions(max_angle=2))
 
 
-@pytest.mark.parametrize("calls", [0, 1, 40, 600])
+@pytest.mark.parametrize("calls", [0, 1, 40])
 def test_a_cancelled_trace_goes_on_to_the_same_bits(atlas, tmp_path, calls) -> None:
     left = iter(range(calls))
     begun = trace_family(
@@ -562,7 +562,7 @@ def test_a_cancelled_trace_goes_on_to_the_same_bits(atlas, tmp_path, calls) -> N
 def test_progress(atlas: FamilyAtlas) -> None:
     seen: list[tuple[int, int]] = []
     found = trace_family(
-        ball(), HEIGHTS, RESTITUTIONS, progress=lambda *progress: seen.append(progress)
+        ball(), HEIGHTS, RESTITUTIONS, progress=lambda done, steps: seen.append((done, steps))
     )
     assert found.document == atlas.document
     assert len(seen) >= 2 and all(0 <= done <= steps for done, steps in seen)
@@ -782,7 +782,8 @@ def test_families_that_are_none() -> None:
     found = trace_family(
         HybridFamily(system, (0, 1), [0.0]), (0, 1), (0, 1), options=COARSE, verify=FEW
     )
-    assert found.objection is None and [str(one.itinerary) for one in found.regions] == ["None"]
+    labels = [str(one.itinerary) for one in found.regions]
+    assert found.objection is None and labels == ["no events"]
 
 
 def test_small_and_far_windows() -> None:

@@ -103,7 +103,12 @@ def test_functions_of_python() -> None:
         return plain_ball(end)
 
     found = stack_family(
-        family, HEIGHTS, (0.5, 0.7), [2.45, 2.55], **few, progress=lambda *steps: done.append(steps)
+        family,
+        HEIGHTS,
+        (0.5, 0.7),
+        [2.45, 2.55],
+        **few,
+        progress=lambda one, all: done.append((one, all)),
     )
     (change,) = found.changes
     assert change.kind == "corner" and change.value == pytest.approx(2.5, abs=1e-9)

@@ -194,7 +194,7 @@ def test_bad_files_are_named() -> None:
         (lambda file: file.update(colour=1), "colour is not known"),
         (lambda file: file["spheres"].pop(), "spheres has 1 entries, and there is no wall"),
         (lambda file: file.pop("surface"), "surface is missing"),
-        (lambda file: file["surface"].update(friction=0), "friction = 0"),
+        (lambda file: file["surface"].update(friction=-1), "friction = -1"),
         (lambda file: file["spheres"][0].update(mass_kg=1), "both given"),
     ]:
         with pytest.raises(ValueError, match=words):

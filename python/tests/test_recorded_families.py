@@ -170,18 +170,21 @@ def test_what_does_not_fit_is_refused() -> None:
 def test_a_start_exists_under_conditions(record, tmp_path) -> None:
     system = HybridSystem()
     fall = system.mode("fall", lambda t, y, p, q: [-1.0])
-    fall.guard("floor", lambda t, y, p, q: y[0])
+    fall.guard("floor", lambda t, y, p, q: y[0], direction="falling")
     asked = []
 
     def start(t, y, p, q):
+        return [q + np.sqrt(p)]
+
+    def plain(t, y, p, q):
         asked.append(p)
-        return [q + math.sqrt(p) if isinstance(p, float) else q + np.sqrt(p)]
+        return [q + (math.sqrt(p) if p >= 0 else math.nan)]
 
     family = HybridFamily(
         system,
         (0.0, 1.0),
         [1.0],
-        start=start,
+        start=start if record else plain,
         requires=[lambda t, y, p, q: p, lambda t, y, p, q: 1.0 + y[0] - q - p],
         record=record,
     )
@@ -220,7 +223,8 @@ def test_what_a_start_requires_is_checked() -> None:
     family = HybridFamily.of(system, "a", "b")
     assert [str(one) for one in family.labels([2.0, 1.0], 1.5)] == ["no events", "no start"]
     plain = HybridSystem()
-    plain.mode("fall", lambda t, y, p, q: [-1.0]).guard("floor", lambda t, y, p, q: y[0])
+    fall = plain.mode("fall", lambda t, y, p, q: [-1.0])
+    fall.guard("floor", lambda t, y, p, q: y[0], direction="falling")
     with pytest.raises(TypeError, match="requires 2 is of type int"):
         HybridFamily(plain, (0.0, 1.0), [1.0], requires=[lambda t, y, p, q: p, 3])
 
@@ -239,7 +243,7 @@ def test_effort_and_progress_in_words() -> None:
     few = trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="certain", **FEW)
     assert few.document["options"]["verify"]["random_points"] == 200
     assert few.document["options"]["rounds"] == 16
-    with pytest.raises(ValueError, match="effort = 'much'; expected one of screen, default"):
+    with pytest.raises(ValueError, match='effort = "much"; expected one of screen, default'):
         trace_family(family, (0.5, 1.5), (0.3, 0.6), effort="much")
     window = (5.0, 6.0), (2.5, 3.0)
     screened = stickslip.trace(*window, effort="screen").document["verification"]

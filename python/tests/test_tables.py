@@ -99,7 +99,3 @@ def test_bodies_without_a_table_are_refused(beads: stickslip.Bodies) -> None:
     for normal, tangential in (((0, 1), (1, 2)), ((2, 1), (1, 2)), ((1, 2), (np.nan, 2))):
         with pytest.raises(ValueError, match="m_per_s"):
             stickslip.table_of_velocities(beads, normal, tangential)
-    surface = stickslip.Surface(0.3, damping_coefficient=0.0)
-    other = stickslip.Bodies(beads.sphere, beads.other, surface, "gran/hertz/history")
-    with pytest.raises(ValueError, match="another contact law"):
-        stickslip.table_of_velocities(other, (1, 2), (1, 2))

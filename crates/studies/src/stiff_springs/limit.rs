@@ -151,6 +151,7 @@ fn require_inside(psi: f64) -> Result<f64, StudyError> {
 
 /// The contact without damping.
 pub(super) fn contact(kappa: f64, psi: f64) -> Result<Contact, StudyError> {
+    InvalidValue::check("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
     Ok(Contact::new(kappa, psi, 0.0)?)
 }
 
