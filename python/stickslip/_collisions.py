@@ -556,13 +556,13 @@ def _rubbing(
     law: tuple[Law | None, float],
 ) -> tuple[Any, Law | None, float]:
     """psi, and the law with its tangential damping: one without tangential force if mu is 0."""
-    smooth = np.ravel(real("mu", 0.4 if mu is None else mu)) == 0
+    friction = real("mu", 0.4 if mu is None else mu)
+    smooth = np.ravel(friction) == 0
     if ratio is None or not smooth.any():
         return _psi(psi, ratio, mu, alpha), *law
     if not smooth.all():
         raise ValueError("mu has values of 0 and others; expected a call of its own for mu = 0")
-    ones = np.ones_like(real("mu", mu))
-    return _psi(psi, ratio, ones, alpha), _laws.without_friction(law[0]), 0.0
+    return _psi(psi, ratio, np.ones_like(friction), alpha), _laws.without_friction(law[0]), 0.0
 
 
 def _strict(errors: OnError) -> bool:

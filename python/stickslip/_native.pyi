@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _Floats: TypeAlias = NDArray[np.float64]
-_Report: TypeAlias = Callable[[int, int], object]
+_Report: TypeAlias = Callable[..., object]
 _Engine: TypeAlias = tuple[str, float | None, float | None]
 _Law: TypeAlias = tuple[str, float]
 _Vector: TypeAlias = tuple[float, float, float]

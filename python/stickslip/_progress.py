@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 #: Called with what is done, and with all that is known to be done; and, if it takes three
 #: arguments, with words that say what is done now, where this is known.
-Report: TypeAlias = Callable[[int, int], object] | Callable[[int, int, str], object]
+Report: TypeAlias = Callable[..., object]
 #: A callable; True for a bar on stderr.
 Progress: TypeAlias = Report | bool
 Found = TypeVar("Found")
