@@ -139,17 +139,20 @@ impl<S: System> Examination<'_, S> {
             }
             values[0].signum()
         };
+        // It shows first beyond zero, and has not been seen to start in that direction: rounding
+        // hides how it comes back.
+        let side = first_side(self.system, at, step, self.statistics, self.room);
+        let direction = self.phase.guards[guard].direction();
+        if side != 0.0 && direction.fires_from(-side) && rate != side {
+            let bracket = Bracket { low: 0.0, high: 1.0, guess: 0.0 };
+            return Ok(Some(Status::Fires(Crossing { sign: -side, bracket })));
+        }
         if rate == 0.0 {
             // It is not a zero that can be divided out, so its sign counts.
             let beginning = Beginning { zero_order: 0, ..beginning };
             return self.isolate_from::<M>(guard, step, values, beginning);
         }
-        // It leaves its zero on one side, and shows first on the other: rounding hides how it comes
-        // back.
-        let comes_back = self.phase.guards[guard].direction().fires_from(rate)
-            && first_side(self.system, at, step, self.statistics, self.room) == -rate;
-        let bracket = Bracket { low: 0.0, high: 1.0, guess: 0.0 };
-        Ok(comes_back.then_some(Status::Fires(Crossing { sign: rate, bracket })))
+        Ok(None)
     }
 
     /// Decides about a guard whose zero at the start is certain, if it is said to have one.

@@ -54,19 +54,25 @@ impl<S: System> Examination<'_, S> {
         theta: f64,
     ) -> Option<f64> {
         let shortest = resolution(step.s, step.h);
-        // What rounding does not hide in between has been isolated.
-        for part in WITHIN {
-            let place = part * theta;
-            if place >= shortest && self.shows::<M>(step, (guard, sign), place) != 0.0 {
-                return Some(0.0);
+        let (mut hides, mut beyond) = (true, theta);
+        for part in WITHIN.into_iter().filter(|part| part * theta >= shortest) {
+            match self.shows::<M>(step, (guard, sign), part * theta) {
+                0.0 => {}
+                side if side > 0.0 => return Some(part * theta),
+                _ => (hides, beyond) = (false, beyond.min(part * theta)),
             }
         }
-        let mut place = theta.max(shortest);
-        while place < 1.0 {
+        // It is expected too early, where rounding still hides all, or too late.
+        let factor = if hides { 4.0 } else { 0.25 };
+        let mut place = if hides { theta.max(shortest) } else { factor * beyond };
+        while place < 1.0 && place >= shortest {
             match self.shows::<M>(step, (guard, sign), place) {
-                0.0 => place *= 4.0,
-                side => return (side > 0.0).then_some(place),
+                side if side > 0.0 => return Some(place),
+                0.0 if hides => {}
+                side if side < 0.0 && !hides => {}
+                _ => return None,
             }
+            place *= factor;
         }
         None
     }
