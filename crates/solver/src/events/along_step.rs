@@ -120,10 +120,7 @@ pub(crate) fn first_side<S: System>(
     let mut reach = f64::EPSILON * s.abs().max(step.h);
     let mut side = 0.0;
     while reach <= step.h && side == 0.0 {
-        S::State::shifted(&mut moved, y, &slope, reach);
-        system.field(mode, s + reach, &moved, &mut ahead);
-        moved.shift(&ahead, 0.5 * reach);
-        moved.shift(&slope, -0.5 * reach);
+        flow::<S>((system, mode), (s, y, &slope), reach, (&mut moved, &mut ahead));
         let change = room.value(system, (mode, guard), s + reach, &moved) - start;
         statistics.field += 1;
         statistics.guards += 1;
@@ -136,6 +133,20 @@ pub(crate) fn first_side<S: System>(
     room.give(ahead);
     room.give(moved);
     side
+}
+
+/// Follows the flow from (`s`, `y`), where it has this `slope`, over a time to the second order. The
+/// state is written to `moved`, and its slope is left in `ahead`.
+pub(crate) fn flow<S: System>(
+    (system, mode): (&S, S::Mode),
+    (s, y, slope): (f64, &S::State, &S::State),
+    by: f64,
+    (moved, ahead): (&mut S::State, &mut S::State),
+) {
+    S::State::shifted(moved, y, slope, by);
+    system.field(mode, s + by, moved, ahead);
+    moved.shift(ahead, 0.5 * by);
+    moved.shift(slope, -0.5 * by);
 }
 
 /// The sizes of time and state whose rounding counts at a place (`s`, `y`) of `step`: the largest

@@ -4,6 +4,7 @@
 //! Its values say nothing about when it comes back, but its first two derivatives do. A transition
 //! that finds the ball on its way up would turn its velocity through the floor.
 
+use crate::events::along_step::flow;
 use crate::events::arrival::SHOWS;
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
@@ -11,7 +12,7 @@ use crate::events::locate::Near;
 use crate::events::quick::NODES;
 use crate::events::sidestep::resolution;
 use crate::events::status::Crossing;
-use crate::method::{Method, StepOf, Store};
+use crate::method::{Method, StepOf};
 use crate::system::System;
 
 /// Where it is looked for between a zero and a crossing.
@@ -111,10 +112,7 @@ impl<S: System> Examination<'_, S> {
         let start = near.value(s, y, self.room);
         let (room, statistics) = (&mut *self.room, &mut *self.statistics);
         let mut value = |by: f64| {
-            S::State::shifted(&mut moved, y, &slope, by);
-            system.field(mode, s + by, &moved, &mut ahead);
-            moved.shift(&ahead, 0.5 * by);
-            moved.shift(&slope, -0.5 * by);
+            flow::<S>((system, mode), (s, y, &slope), by, (&mut moved, &mut ahead));
             statistics.field += 1;
             statistics.guards += 1;
             near.value(s + by, &moved, room)
@@ -123,10 +121,10 @@ impl<S: System> Examination<'_, S> {
         let mut found = None;
         let longest = step.h.max(self.usual).max(LONGEST * s.abs());
         while found.is_none() && reach > 0.0 && reach <= longest {
-            let (behind, before) = (value(reach), value(-reach));
-            let bend = behind + before - 2.0 * start;
+            let (after, before) = (value(reach), value(-reach));
+            let bend = after + before - 2.0 * start;
             if bend.abs() > SEEN * hidden {
-                found = Some((0.5 * (behind - before) / reach, bend / (reach * reach)));
+                found = Some((0.5 * (after - before) / reach, bend / (reach * reach)));
             }
             reach *= 4.0;
         }
