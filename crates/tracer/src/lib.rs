@@ -121,6 +121,7 @@ mod options;
 mod polyline;
 mod regions;
 mod stack;
+mod stopwatch;
 mod survey;
 mod tracing;
 mod watch;

@@ -1,7 +1,8 @@
 //! What a caller sees of a long computation, and how it cancels one.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use crate::stopwatch::Stopwatch;
 use crate::window::Point;
 
 /// What a computation reports while it runs, from any thread and in any order.
@@ -85,7 +86,7 @@ impl<'a> Watch<'a> {
             if self.is_cancelled() {
                 return None;
             }
-            let (begun, left) = (Instant::now(), &points[results.len()..]);
+            let (begun, left) = (Stopwatch::start(), &points[results.len()..]);
             let portion = &left[..size.min(left.len())];
             results.extend(compute(portion));
             self.report(Progress::Advance { steps: portion.len() });

@@ -4,11 +4,10 @@
 //! needed to go on, from memory or from a file. The runs of the grid are computed again. So is a
 //! verification that was cancelled, and a second look starts again from the network before it.
 
-use std::time::Instant;
-
 use crate::executor::Executor;
 use crate::family::Family;
 use crate::options::TraceError;
+use crate::stopwatch::Stopwatch;
 use crate::tracing::runs::{Sampled, Traced, checked};
 use crate::tracing::tracer::Tracer;
 use crate::tracing::tracer::island;
@@ -31,8 +30,8 @@ impl<F: Family> Tracer<'_, F> {
         const KEEP: u32 = 20;
         let watch = self.runs.watch;
         let keep = |tracer: &Self| {
-            let begun = Instant::now();
-            (tracer.now(), KEEP * begun.elapsed(), Instant::now())
+            let begun = Stopwatch::start();
+            (tracer.now(), KEEP * begun.elapsed(), Stopwatch::start())
         };
         let (mut kept, mut left) = (keep(self), self.steps_left());
         watch.report(Progress::Now { what: self.doing() });
