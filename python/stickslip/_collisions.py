@@ -248,8 +248,12 @@ class Collision(Tabular):
         return self._native.picture()
 
     def animate(self, path: str | os.PathLike[str]) -> None:
-        """Writes the picture as it comes into being, an animated GIF."""
-        Path(path).write_bytes(self._native.animation())
+        """Writes the picture as it comes into being: a GIF, or an MP4 by ffmpeg.
+
+        Raises ValueError for another name, and OSError if the file cannot be written or there is
+        no ffmpeg.
+        """
+        self._native.animate(path)
 
     def _repr_html_(self) -> str:
         return self.picture()

@@ -64,7 +64,7 @@ pub use compiled::Compiled;
 pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
-pub use recording::{Recording, Stay, StoredStep, outcome_name};
+pub use recording::{Recording, Stay, outcome_name};
 pub use run::Runnable;
 pub use sensitivity::{By, Moving, Sensitivities, SensitivityError};
 pub use sliding::NotSliding;

@@ -1,7 +1,7 @@
 //! A run of a system with everything that happened.
 
 use stickslip_solver::dynamic::{
-    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, run_dynamic_with,
+    DynamicObserver, DynamicRecorder, DynamicRun, DynamicSegment, DynamicSwitch, run_dynamic_with,
 };
 use stickslip_solver::{EmbeddedPair, Grazing, Options, Outcome, Pole, Preempted, Rest, RunError};
 
@@ -25,20 +25,7 @@ pub struct Recording {
     start: f64,
     state: Vec<f64>,
     mode: usize,
-    steps: Vec<StoredStep>,
-}
-
-/// A step with its dense output.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StoredStep {
-    /// The mode.
-    pub mode: usize,
-    /// Where the step begins.
-    pub s: f64,
-    /// Its size.
-    pub h: f64,
-    /// [`DynamicDense::coefficients`].
-    pub coefficients: Vec<f64>,
+    steps: Vec<DynamicSegment<usize>>,
 }
 
 /// A time in which a run was in one mode.
@@ -66,44 +53,12 @@ pub const fn outcome_name(outcome: Outcome) -> &'static str {
     }
 }
 
-struct Recorder<'a> {
-    stops: &'a dyn Fn(f64) -> bool,
-    events: Vec<DynamicSwitch<usize>>,
-    touches: Vec<Grazing<usize>>,
-    poles: Vec<Pole<usize>>,
-    preempted: Vec<Preempted<usize>>,
-    rests: Vec<Rest<usize>>,
-    steps: Vec<StoredStep>,
-}
+/// Ends a run where a function says so.
+struct Until<'a>(&'a dyn Fn(f64) -> bool);
 
-impl DynamicObserver<usize> for Recorder<'_> {
-    const WANTS_SEGMENTS: bool = true;
-
+impl DynamicObserver<usize> for Until<'_> {
     fn stops(&self, s: f64) -> bool {
-        (self.stops)(s)
-    }
-
-    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
-        self.events.push(event.to_switch());
-    }
-    fn on_grazing(&mut self, touch: &Grazing<usize>) {
-        self.touches.push(*touch);
-    }
-    fn on_pole(&mut self, pole: &Pole<usize>) {
-        self.poles.push(*pole);
-    }
-    fn on_preempted(&mut self, preempted: &Preempted<usize>) {
-        self.preempted.push(*preempted);
-    }
-    fn on_rest(&mut self, rest: &Rest<usize>) {
-        self.rests.push(*rest);
-    }
-    fn forget(&mut self, switches: usize) {
-        self.events.truncate(self.events.len().saturating_sub(switches));
-    }
-    fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {
-        let (s, h, coefficients) = (dense.start(), dense.size(), dense.coefficients().to_vec());
-        self.steps.push(StoredStep { mode, s, h, coefficients });
+        (self.0)(s)
     }
 }
 
@@ -168,18 +123,12 @@ impl Runnable {
         end: f64,
         options: &Options,
     ) -> Result<Recording, RunError> {
-        let mut recorder = Recorder {
-            stops,
-            events: Vec::new(),
-            touches: Vec::new(),
-            poles: Vec::new(),
-            preempted: Vec::new(),
-            rests: Vec::new(),
-            steps: Vec::new(),
-        };
         let start = self.start();
-        let run = run_dynamic_with(method, self, start, end, options, &mut recorder)?;
-        let Recorder { events, touches, poles, preempted, rests, steps, .. } = recorder;
+        let mut observer = (DynamicRecorder::default(), Until(stops));
+        let run = run_dynamic_with(method, self, start, end, options, &mut observer)?;
+        let (DynamicRecorder { switches, grazings, poles, preempted, rests, segments, .. }, _) =
+            observer;
+        let (events, touches, steps) = (switches, grazings, segments);
         let (state, mode, start) = (start.state.to_vec(), start.mode, start.s);
         Ok(Recording { run, events, touches, poles, rests, preempted, start, state, mode, steps })
     }
@@ -276,7 +225,7 @@ impl Recording {
 
     /// The steps of the run.
     #[must_use]
-    pub fn steps(&self) -> &[StoredStep] {
+    pub fn steps(&self) -> &[DynamicSegment<usize>] {
         &self.steps
     }
 
@@ -366,13 +315,5 @@ impl Recording {
             (None, Some(rest)) => rest.to,
             (None, None) => self.mode,
         }
-    }
-}
-
-impl StoredStep {
-    fn at(&self, s: f64, n: usize) -> Vec<f64> {
-        let dense = DynamicDense::from_coefficients(self.s, self.h, n, &self.coefficients);
-        // The coefficients are those of a step with n components.
-        dense.map_or_else(|| vec![f64::NAN; n], |dense| dense.at((s - self.s) / self.h))
     }
 }

@@ -48,6 +48,7 @@ pub struct Moving {
 
 /// Why a run has no derivatives.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SensitivityError {
     /// The system cannot run with these parameters.
     #[error(transparent)]

@@ -40,6 +40,7 @@ const PARTS: [&str; 5] = ["above", "below", "sliding", "above_released", "below_
 
 /// Why a mode cannot slide.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NotSliding {
     /// Nothing depends on the side.
     #[error(

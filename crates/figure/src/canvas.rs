@@ -4,17 +4,20 @@
 //! image only at its own size, so that curves in SVG are ragged and a map cannot be one small
 //! image; younger libraries bring tens of thousands of lines. What two axes need is short, and SVG
 //! is text. A picture places [`panel::Panel`]s, draws into them, and ends as an [`svg::Svg`]. PNG
-//! is the same SVG, drawn by resvg.
+//! and PDF are the same SVG, read by usvg and drawn by resvg or shape by shape.
 //!
 //! Start reading in [`panel`] (axes, and what is drawn against them) and [`mod@svg`] (shapes and
 //! words). Then `ticks` (round values on axes), `legend` (keys and their meanings), `placement`
 //! (places of labels in regions), [`markup`] (texts), [`shape`] and [`style`]
-//! (sizes and colours), `bitmap` (images in a picture) and [`raster`] (a picture as PNG).
+//! (sizes and colours), `bitmap` (images in a picture) [`raster`] (a picture as PNG) and
+//! [`mod@pdf`] (as PDF).
 
 mod bitmap;
 mod legend;
 pub mod markup;
 pub mod panel;
+#[cfg(feature = "png")]
+pub mod pdf;
 mod placement;
 #[cfg(feature = "png")]
 pub mod raster;

@@ -2,6 +2,7 @@
 
 /// The reason why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FigureError {
     /// A map has no cells, or not one value for each.
     #[error(

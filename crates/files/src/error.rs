@@ -8,6 +8,7 @@ use stickslip_figure::FigureError;
 
 /// The reason why a file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FileError {
     /// What an option names is of no use.
     #[error("{0}")]
@@ -46,6 +47,18 @@ pub enum FileError {
         path: PathBuf,
         /// What is wrong.
         source: FigureError,
+    },
+    /// A film cannot be made.
+    #[error(
+        "{}: no film can be made: {source}; expected ffmpeg among the programs of this machine, or a \
+         name that ends in .gif",
+        path.display()
+    )]
+    Film {
+        /// The file.
+        path: PathBuf,
+        /// What the system reports.
+        source: io::Error,
     },
 }
 

@@ -6,6 +6,7 @@ use thiserror::Error;
 /// Why an orbit or a branch was not found. Segments are counted from 0, in the order of the
 /// itinerary.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum OrbitError {
     /// A value cannot be used.
     #[error(transparent)]

@@ -220,6 +220,7 @@ impl Fit {
 
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// Settings or data cannot be used, or an impact has no scaled parameters.
     #[error(transparent)]

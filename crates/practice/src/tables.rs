@@ -132,6 +132,7 @@ impl fmt::Display for TablePlace {
 
 /// Why there is no table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// Settings or a document are out of range, or no collision has the parameters of the window.
     #[error(transparent)]

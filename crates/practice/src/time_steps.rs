@@ -109,6 +109,7 @@ impl TimeSteps {
 
 /// Why there are no errors of time steps.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TimeStepsError {
     /// Settings are out of range.
     #[error(transparent)]

@@ -1,9 +1,14 @@
 //! One collision.
 
+use std::path::PathBuf;
+
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
-use stickslip_figure::{gif, pictures};
+use stickslip_figure::pictures;
+use stickslip_files::FileError;
+use stickslip_files::output::file::publish;
+use stickslip_files::output::picture::AnimationFile;
 use stickslip_model::document::COLLISION;
 use stickslip_model::history::{History, Snapshot};
 use stickslip_model::sensitivity::Derived;
@@ -12,7 +17,7 @@ use stickslip_solver::Statistics;
 
 use crate::arrays::numbers;
 use crate::engines::{Choice, LawChoice, document};
-use crate::failure::{Failure, bad_input, failed};
+use crate::failure::{Failure, bad_input};
 
 /// A collision with what computed it.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -106,12 +111,14 @@ impl Collision {
         Ok(pictures::collision::draw(&self.result, &history).document())
     }
 
-    /// The same picture as it comes into being, as GIF.
-    fn animation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+    /// Writes the same picture as it comes into being, as GIF or MP4.
+    fn animate(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let file = AnimationFile::new(path).map_err(PyValueError::new_err)?;
+        let unwritten = |error: FileError| PyOSError::new_err(error.to_string());
+        file.probe().map_err(unwritten)?;
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
         let frames = pictures::collision::frames(&self.result, &history);
-        let film = py.detach(|| gif(frames)).map_err(failed)?;
-        Ok(PyBytes::new(py, &film))
+        py.detach(|| publish([file.write(frames)?])).map_err(unwritten)
     }
 }
 

@@ -166,8 +166,7 @@ impl FormulaSystem {
             move |_: Report<'_>| system.sensitivities(&by, &parameters, method, end, &options);
         let found = watched(py, 1, None, work)?.map_err(|error| match error {
             SensitivityError::Parameters(error) => bad_input(error),
-            SensitivityError::Run(error) => failed(error),
-            error @ SensitivityError::Jump { .. } => failed(error),
+            error => failed(error),
         })?;
         let columns = PyDict::new(py);
         let reals = |values: Vec<f64>| values.into_pyarray(py);

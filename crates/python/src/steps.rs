@@ -47,6 +47,7 @@ impl TimeSteps {
         found.map(Self).map_err(|error| match error {
             TimeStepsError::Settings(invalid) => bad_input(invalid),
             TimeStepsError::Contact(failure) => of_collision(failure),
+            error => failed(error),
         })
     }
 

@@ -11,6 +11,7 @@ use stickslip_studies::search::SearchError;
 
 /// Why a part of the reproduction has no result.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReproductionError {
     /// A study that is a part of the reproduction has no result.
     #[error(transparent)]

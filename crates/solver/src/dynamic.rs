@@ -58,17 +58,17 @@
 //!
 //! # What differs
 //!
-//! - There are no sensitivities. Systems of formulas, in the crate `stickslip-expression`, have
-//!   them.
+//! - [`sensitivities_dynamic`](crate::sensitivity::sensitivities_dynamic) are those of a
+//!   [`ReadableDynamic`] whose transitions are readable too.
 //! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
 //! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
 //!   component; beyond that, by moving all components at once, in eight irregular but fixed
 //!   patterns.
 //! - A run allocates room for 70 states when it starts, and a little at events. It allocates
 //!   nothing on steps without event, and nothing for a right-hand side.
-//! - The observers [`Recorder`](crate::Recorder), [`Samples`](crate::Samples), tuples, and
-//!   [`Weighted`](crate::Weighted) tolerances exist for fixed dimensions only, and so does
-//!   [`HybridSystem::settle`](crate::HybridSystem::settle).
+//! - [`Samples`](crate::Samples) exists for fixed dimensions only ([`DynamicRecorder::at`] knows
+//!   all times), and so does [`HybridSystem::settle`](crate::HybridSystem::settle). Tolerances of
+//!   components are those of [`DynamicSystem::tolerances`].
 //!
 //! # Cost
 //!
@@ -83,6 +83,7 @@ mod backwards;
 mod by_name;
 mod dense;
 pub(crate) mod few;
+mod recorder;
 mod results;
 mod runner;
 mod system;
@@ -90,6 +91,7 @@ mod system;
 pub use backwards::run_dynamic_backwards;
 pub use by_name::run_dynamic_with;
 pub use dense::DynamicDense;
+pub use recorder::{DynamicRecorder, DynamicSegment};
 pub use results::{DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch};
 pub use runner::run_dynamic;
 pub use system::{DynamicStart, DynamicSystem, ReadableDynamic};

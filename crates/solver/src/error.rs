@@ -6,6 +6,7 @@ use crate::hybrid::Outcome;
 
 /// Why a run failed. Every variant carries the numbers that say where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// An option is out of its range.
     #[error(transparent)]

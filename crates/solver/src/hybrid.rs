@@ -5,6 +5,7 @@
 //! receives the results while the run goes on.
 
 mod guard;
+mod mode_table;
 mod readable;
 mod results;
 pub(crate) mod schedule;
@@ -12,6 +13,7 @@ pub(crate) mod schedule;
 use std::fmt;
 
 pub use guard::{Direction, Guard};
+pub use mode_table::{ModeNumber, ModeTable};
 pub use readable::ReadableSystem;
 pub(crate) use readable::constant;
 pub use results::{

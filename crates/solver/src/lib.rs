@@ -74,7 +74,10 @@
 //! | switches that accumulate, as when a ball comes to rest | [`Outcome::Zeno`], or [`HybridSystem::rest`] to go on behind them |
 //! | events at given times | [`Guard::clock`] and [`HybridSystem::schedule`] |
 //! | values that only events change | fields of the mode |
-//! | a quick problem with one mode | [`Closures`] |
+//! | a mode that cannot be copied, as a list | its number in a [`ModeTable`] |
+//! | a quick problem | [`Closures`] |
+//! | the steps one by one | [`Stepper`], an iterator |
+//! | derivatives with respect to parameters | [`fn@sensitivity::sensitivities`] |
 //! | the state at any time | [`Recorder`] as the observer |
 //! | the state at given times | [`Samples`] as the observer |
 //! | two observers | a tuple of both |
@@ -167,13 +170,14 @@ pub mod sensitivity;
 
 pub use error::RunError;
 pub use hybrid::{
-    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Preempted, ReadableSystem,
-    Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times,
+    Direction, Grazing, Guard, HybridSystem, ModeNumber, ModeTable, Observer, Outcome, Pole,
+    Preempted, ReadableSystem, Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times,
 };
 pub use method::{Dop853, Dopri5, EmbeddedPair, Method, State};
 pub use options::{Options, StepSize};
 pub use runs::{
-    Closures, Recorder, Sample, Samples, Weighted, integrate, run, run_backwards, run_with,
+    Closures, Recorder, Sample, Samples, StepTaken, Stepper, Steps, Weighted, integrate, run,
+    run_backwards, run_with,
 };
 pub use stickslip_number::{Enclosure, GivenValue, Interval, InvalidValue, Number};
 // What appears in signatures: states, and numbers that know their rates.

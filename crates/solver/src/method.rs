@@ -21,7 +21,7 @@ pub use dop853::Dop853;
 pub use dopri5::Dopri5;
 pub use order::{Order, fit_order};
 pub use pair::EmbeddedPair;
-pub use state::{FUSED_PRODUCTS, State};
+pub use state::{Columns, FUSED_PRODUCTS, State};
 pub(crate) use step::Field;
 pub use step::{Step, StepOf, Trial, TrialOf};
 pub use store::Store;

@@ -2,10 +2,11 @@
 //!
 //! Start reading in `runner` (the loop), `instant` (the events of one instant, in order) and
 //! `clock` (the independent variable). Then come `smooth` (problems without guards), `closures`
-//! (systems of one mode), `trajectory` (recorded runs), `samples` (output at given times), `both`
-//! (two observers), `backwards` (runs that go backwards), `by_name` (pairs that are chosen at run
-//! time), `weighted` (tolerances of components) and `unlocated` (runs without event location, for
-//! comparison). `finite`, `rejected` and `last_part` are what several of these need.
+//! (systems of closures), `steps` (a run as an iterator), `trajectory` (recorded runs), `samples`
+//! (output at given times), `both` (two observers), `backwards` (runs that go backwards), `by_name`
+//! (pairs that are chosen at run time), `weighted` (tolerances of components) and `unlocated` (runs
+//! without event location, for comparison). `finite`, `rejected` and `last_part` are what several
+//! of these need.
 
 pub(crate) mod at_switches;
 pub(crate) mod backwards;
@@ -18,6 +19,7 @@ pub(crate) mod rejected;
 pub(crate) mod runner;
 mod samples;
 pub mod smooth;
+mod steps;
 pub mod trajectory;
 mod unlocated;
 mod weighted;
@@ -31,6 +33,7 @@ pub use closures::Closures;
 pub use runner::run;
 pub use samples::{Sample, Samples};
 pub use smooth::integrate;
+pub use steps::{StepTaken, Stepper, Steps};
 pub use trajectory::{Recorder, Segment, Trajectory};
 pub use unlocated::run_over_switches;
 pub use weighted::Weighted;

@@ -7,6 +7,7 @@ use crate::search::SearchError;
 
 /// Why a study has no result.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// Settings are out of range.
     #[error(transparent)]

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 /// Why a search has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SearchError {
     /// There is no place to start from.
     #[error("a search has no places to start from")]

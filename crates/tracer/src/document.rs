@@ -106,6 +106,7 @@ pub struct Document<Label, Margin> {
 
 /// The reason why a document is not an atlas.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DocumentError {
     /// The document has another layout.
     #[error("schema = {found:?}: expected {SCHEMA:?}")]

@@ -115,6 +115,7 @@ impl TraceOptions {
 
 /// Why there is no trace, no atlas or no stack.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TraceError<E: std::error::Error + 'static> {
     /// An option is out of its range.
     #[error(transparent)]

@@ -49,7 +49,7 @@ pub struct BasinsArguments {
     pub table: Option<PathBuf>,
 
     /// Picture of the basins
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 

@@ -49,7 +49,7 @@ pub struct BranchArguments {
     pub table: Option<PathBuf>,
 
     /// Picture of a component over the parameter, with special orbits
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 

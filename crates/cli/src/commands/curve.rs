@@ -48,7 +48,7 @@ pub struct CurveArguments {
     pub out: Option<PathBuf>,
 
     /// Picture of the curve in its window, with orbits that are special twice
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 }

@@ -103,7 +103,7 @@ pub struct FitArguments {
     pub write: Option<Code>,
 
     /// Picture of data, fit and boundaries, which are printed as well
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 

@@ -55,12 +55,17 @@ pub struct ImpactArguments {
     pub verbose: bool,
 
     /// Picture of the forces and the velocity of one impact, which is printed as well
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(
+        long,
+        value_name = "FILE.svg|.png|.pdf",
+        help_heading = "Output",
+        conflicts_with = "batch"
+    )]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 
     /// Animation of the same picture
-    #[arg(long, value_name = "FILE.gif", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(long, value_name = "FILE.gif|.mp4", help_heading = "Output", conflicts_with = "batch")]
     #[arg(value_parser = files::animation())]
     pub animate: Option<AnimationFile>,
 

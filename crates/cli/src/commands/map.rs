@@ -86,7 +86,7 @@ pub struct MapArguments {
     pub part: Option<MapPart>,
 
     /// Picture of ε_t in colours, and of the regions with equal numbers of switches
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 

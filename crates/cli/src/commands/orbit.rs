@@ -37,7 +37,7 @@ pub struct OrbitArguments {
     pub out: Option<PathBuf>,
 
     /// Picture of the state over one period, with modes shaded and events marked
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 }

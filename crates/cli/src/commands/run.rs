@@ -82,7 +82,7 @@ pub struct RunArguments {
     pub points: usize,
 
     /// Picture of the state against time, with modes shaded and events marked
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 }

@@ -55,7 +55,7 @@ pub struct SectionArguments {
     pub table: Option<PathBuf>,
 
     /// Picture of the points
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 

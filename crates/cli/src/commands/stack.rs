@@ -66,7 +66,7 @@ pub struct StackArguments {
     pub out: PathBuf,
 
     /// Picture of the atlases, and of the births and deaths of regions over the damping
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 

@@ -107,7 +107,7 @@ pub struct TimestepArguments {
     pub format: Format,
 
     /// Picture of the errors over the step, which are printed as well
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 

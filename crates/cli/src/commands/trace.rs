@@ -72,7 +72,7 @@ pub struct TraceArguments {
     pub out: PathBuf,
 
     /// Picture of the boundaries, with the number of switches in each region
-    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output")]
     #[arg(value_parser = files::picture())]
     pub plot: Option<PictureFile>,
 

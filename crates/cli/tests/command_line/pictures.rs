@@ -343,9 +343,17 @@ fn collisions_are_animated() {
     let ran = workspace.run(&format!("{line} a.gif"));
     assert_eq!((ran.code, ran.stderr.as_str(), ran.said.as_str()), (0, "", "wrote a.gif\n"));
     assert!(fs::read(workspace.path("a.gif")).unwrap().starts_with(b"GIF89a"));
-    let ran = workspace.run(&format!("{line} a.mp4"));
+    let ran = workspace.run(&format!("{line} a.avi"));
     assert_eq!(ran.code, 2);
-    assert!(ran.stderr.contains("expected a name that ends in .gif"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("expected a name that ends in .gif or .mp4"), "{}", ran.stderr);
+    // A film needs ffmpeg, and without it nothing is begun.
+    let mut command = Command::new(cargo_bin("stickslip"));
+    command.args(line.split(' ')).arg(workspace.path("a.mp4")).env("PATH", "");
+    let ran = command.output().expect("the program runs");
+    assert_eq!(ran.status.code(), Some(1));
+    let stderr = String::from_utf8(ran.stderr).expect("UTF-8");
+    assert!(stderr.contains("expected ffmpeg among the programs"), "{stderr}");
+    assert_eq!(workspace.names(), ["a.gif"]);
     assert_eq!(workspace.run(&format!("{line} a.gif --course a.gif")).code, 2);
     let spheres = example("steel_spheres.json");
     let ran = workspace.run(&format!("impact {} --animate b.gif", spheres.display()));

@@ -25,7 +25,7 @@ impl Regularized {
 }
 
 /// The terms of damping are always computed, so that they have a derivative at a = 0.
-impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
+impl Differentiable<STATE, GUARDS> for Regularized {
     fn field_change(
         &self,
         phase: Phase,

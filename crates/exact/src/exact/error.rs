@@ -10,6 +10,7 @@ use crate::domain;
 
 /// The reason why the exact engine does not compute a collision.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExactError {
     /// The contact is out of range.
     #[error(transparent)]

@@ -87,14 +87,7 @@ pub fn gif(pictures: impl IntoIterator<Item = Svg>) -> Result<Vec<u8>, FigureErr
 
 /// The pixels of the picture, `scale` for each pixel of the SVG in each direction.
 fn pixels(svg: &Svg, scale: f32) -> Result<Pixmap, FigureError> {
-    let (width, height) = (svg.width(), svg.height());
-    if ![width, height].iter().all(|side| side.is_finite() && *side > 0.0) {
-        return Err(FigureError::Size { width, height });
-    }
-    let mut fonts = Database::new();
-    fonts.load_font_data(FONT_FILE.to_vec());
-    let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-    let tree = Tree::from_str(&svg.document(), &options)?;
+    let tree = tree(svg)?;
     let size = tree.size().to_int_size().scale_by(scale);
     let size = size.ok_or(FigureError::Memory)?;
     // Pixmap::new aborts where this fails.
@@ -105,4 +98,16 @@ fn pixels(svg: &Svg, scale: f32) -> Result<Pixmap, FigureError> {
     let mut pixels = Pixmap::new(size.width(), size.height()).ok_or(FigureError::Memory)?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
     Ok(pixels)
+}
+
+/// The picture as shapes, with its texts as outlines.
+pub(super) fn tree(svg: &Svg) -> Result<Tree, FigureError> {
+    let (width, height) = (svg.width(), svg.height());
+    if ![width, height].iter().all(|side| side.is_finite() && *side > 0.0) {
+        return Err(FigureError::Size { width, height });
+    }
+    let mut fonts = Database::new();
+    fonts.load_font_data(FONT_FILE.to_vec());
+    let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+    Ok(Tree::from_str(&svg.document(), &options)?)
 }

@@ -7,6 +7,7 @@ mod examples;
 mod families;
 mod layout;
 mod maps;
+mod pdfs;
 mod stacks;
 mod svg;
 mod unusual;

@@ -5,7 +5,7 @@ use resvg::usvg::{Group, Node, Options, Rect, TextChunk, Tree};
 use roxmltree::Document;
 use stickslip_figure::Svg;
 
-const FONT: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
+pub const FONT: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
 
 /// A text of a picture, and the rectangle around it.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ use stickslip_solver::{Outcome, RunError};
 
 /// The reason why a collision cannot be computed, or why there is none.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CollisionError {
     /// No collision has these parameters.
     #[error(transparent)]

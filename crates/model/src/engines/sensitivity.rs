@@ -8,17 +8,21 @@
 //! which is earlier by a in time, to first order. This is added to the derivative of the contact
 //! time at a = 0, which is the derivative from above.
 
-use stickslip_contact::phase::{END, GUARDS, Phase};
+use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{STATE, T, U, V, W};
 use stickslip_contact::regularized::derivatives::PARAMETERS;
 use stickslip_contact::regularized::equations::Parameter;
 use stickslip_contact::{Contact, Regime};
+use stickslip_solver::method::Columns;
 use stickslip_solver::sensitivity::{Change, SwitchSensitivity, sensitivities_with};
-use stickslip_solver::{Outcome, Start, State};
+use stickslip_solver::{Outcome, State};
 
 use super::error::CollisionError;
 use super::integrator::Collider;
+
+/// A value and its derivatives.
+const VALUES: usize = 1 + PARAMETERS;
 
 /// A result of a collision with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,21 +80,18 @@ impl Collider {
     /// As [`Self::collide`]. A switch that is a graze has no derivatives: the error is
     /// [`RunError::State`](stickslip_solver::RunError::State).
     pub fn sensitivity(&self, contact: Contact) -> Result<Sensitivity, CollisionError> {
-        const TOGETHER: usize = STATE * (1 + PARAMETERS);
         contact.require_paper("the sensitivity")?;
         let system = Regularized::new(contact);
-        let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
-        let by = Parameter::ALL.map(|p| State::from(system.equations.start_by(contact.psi(), p)));
-        let found = sensitivities_with::<_, STATE, GUARDS, PARAMETERS, TOGETHER>(
-            self.pair(),
-            &system,
-            start,
-            by,
-            f64::INFINITY,
-            &self.options_for(&contact)?,
-        )?;
+        let mut start = Columns::<STATE, VALUES>::zeros();
+        start.set_column(0, &system.start());
+        for (j, by) in Parameter::ALL.into_iter().enumerate() {
+            let by = State::from(system.equations.start_by(contact.psi(), by));
+            start.set_column(1 + j, &by);
+        }
+        let (from, options) = ((Phase::first(&contact), 0.0), self.options_for(&contact)?);
+        let found = sensitivities_with(self.pair(), &system, from, start, f64::INFINITY, &options)?;
         let phases = found.switches.iter().chain([&found.end]);
-        let mut time = [0.0; 1 + PARAMETERS];
+        let mut time = [0.0; VALUES];
         let times: Vec<_> = phases
             .map(|end| {
                 time = add(time, component(end, T));
@@ -100,7 +101,7 @@ impl Collider {
         if found.outcome != (Outcome::EndedByGuard { guard: END }) {
             return Err(CollisionError::Unfinished { outcome: found.outcome, time: time[0] });
         }
-        let derived = |values: [f64; 1 + PARAMETERS]| {
+        let derived = |values: [f64; VALUES]| {
             let [value, ln_kappa, ln_psi, damping] = values;
             Derived {
                 value,
@@ -142,23 +143,21 @@ impl Derived {
 }
 
 /// A component of the state at the end of a phase, and its derivatives.
-fn component(
-    end: &SwitchSensitivity<Phase, STATE, PARAMETERS>,
-    index: usize,
-) -> [f64; 1 + PARAMETERS] {
-    let [a, b, c] = end.state_derivatives.map(|derivative| derivative[index]);
-    [end.state[index], a, b, c]
+fn component(end: &SwitchSensitivity<Phase, STATE, VALUES>, index: usize) -> [f64; VALUES] {
+    std::array::from_fn(|j| end.state[(index, j)])
 }
 
 /// The rate of the compression at the end of a phase, and its derivatives.
 fn compression_rate(
     system: &Regularized,
-    end: &SwitchSensitivity<Phase, STATE, PARAMETERS>,
-) -> [f64; 1 + PARAMETERS] {
-    let mut rate = [system.compression_rate(&end.state); 1 + PARAMETERS];
+    end: &SwitchSensitivity<Phase, STATE, VALUES>,
+) -> [f64; VALUES] {
+    let state = end.state.column(0).into_owned();
+    let mut rate = [system.compression_rate(&state); VALUES];
     for (index, part) in rate[1..].iter_mut().enumerate() {
-        let change = Change { s: 0.0, parameter: Some(index), y: end.state_derivatives[index] };
-        let (equations, y) = system.along(&end.state, &change);
+        let y = end.state.column(1 + index).into_owned();
+        let change = Change { s: 0.0, parameter: Some(index), y };
+        let (equations, y) = system.along(&state, &change);
         *part = equations.compression_rate::<true>(y[U], y[V]).eps;
     }
     rate

@@ -8,6 +8,7 @@ use crate::sheet::TooNarrow;
 
 /// The reason why a window has no atlas or no stack.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AtlasError {
     /// No collision has the parameters of the window.
     #[error(transparent)]

@@ -41,11 +41,8 @@ pub fn of_trace(py: Python<'_>, error: &TraceError<UserError>) -> PyErr {
             | SubdivisionError::Labels { .. },
         ) => bad_input(error),
         TraceError::Run { source, .. } => bad_input(source),
-        TraceError::TooManyCurves { .. }
-        | TraceError::Cancelled
-        | TraceError::NotANumber { .. }
-        | TraceError::Subdivision(_) => failed(error),
         TraceError::Layer { value, source } => with_value(py, of_trace(py, source), *value),
+        _ => failed(error),
     }
 }
 

@@ -119,7 +119,6 @@ fn reason(system: &System, error: &RunError) -> String {
             )
         }
         RunError::Schedule { s } => format!("After t = {s:?}, a clock has no valid next time."),
-        RunError::Option(_) | RunError::Unfinished { .. } => error.to_string(),
         RunError::Span { from, to } => format!("no run leads from t = {from:?} to t = {to:?}"),
         RunError::State { s, component } => {
             format!("At t = {s:?}, component {component} of the state is not finite.")
@@ -140,5 +139,6 @@ fn reason(system: &System, error: &RunError) -> String {
              from a zero of another order than from_zero says.",
             system.guard_label(mode, guard)
         ),
+        _ => error.to_string(),
     }
 }

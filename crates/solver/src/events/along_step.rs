@@ -135,8 +135,8 @@ pub(crate) fn first_side<S: System>(
     side
 }
 
-/// Follows the flow from (`s`, `y`), where it has this `slope`, over a time to the second order. The
-/// state is written to `moved`, and its slope is left in `ahead`.
+/// Follows the flow from (`s`, `y`), where it has this `slope`, over a time to the second order. It
+/// writes the state to `moved` and leaves its slope in `ahead`.
 pub(crate) fn flow<S: System>(
     (system, mode): (&S, S::Mode),
     (s, y, slope): (f64, &S::State, &S::State),

@@ -5,12 +5,15 @@
 //! has the instruction. The workspace is built for such targets (x86-64-v3); on others the last
 //! digits differ (docs/numerics.md).
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::method::tableau::MAX_STAGES;
 
 /// A state of `N` components.
 pub type State<const N: usize> = SVector<f64, N>;
+
+/// Columns of `N` components that are integrated together: a state, and its derivatives.
+pub type Columns<const N: usize, const Q: usize> = SMatrix<f64, N, Q>;
 
 /// Whether the steps of this build round a product and the sum to which it is added only once.
 ///
@@ -20,12 +23,12 @@ pub const FUSED_PRODUCTS: bool = cfg!(any(target_feature = "fma", target_arch = 
 
 /// The sum of the first `count` stages `k`, each times its weight.
 #[inline(always)]
-pub(super) fn combine<const N: usize>(
+pub(super) fn combine<const N: usize, const Q: usize>(
     weights: &[f64; MAX_STAGES],
-    k: &[State<N>; MAX_STAGES],
+    k: &[Columns<N, Q>; MAX_STAGES],
     count: usize,
-) -> State<N> {
-    let mut sum = State::zeros();
+) -> Columns<N, Q> {
+    let mut sum = Columns::zeros();
     for j in 0..count {
         if weights[j] != 0.0 {
             sum = add_multiple(&sum, &k[j], weights[j]);
@@ -37,12 +40,12 @@ pub(super) fn combine<const N: usize>(
 /// sum + factor·k. It is rounded only once if the processor has an instruction for that, which
 /// halves the arithmetic of a step.
 #[inline(always)]
-pub(super) fn add_multiple<const N: usize>(sum: &State<N>, k: &State<N>, factor: f64) -> State<N> {
-    if FUSED_PRODUCTS {
-        State::from_fn(|i, _| k[i].mul_add(factor, sum[i]))
-    } else {
-        sum + k * factor
-    }
+pub(super) fn add_multiple<const N: usize, const Q: usize>(
+    sum: &Columns<N, Q>,
+    k: &Columns<N, Q>,
+    factor: f64,
+) -> Columns<N, Q> {
+    if FUSED_PRODUCTS { k.zip_map(sum, |k, sum| k.mul_add(factor, sum)) } else { sum + k * factor }
 }
 
 /// sum + factor·k for one component, rounded as in [`add_multiple`].

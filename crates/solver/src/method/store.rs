@@ -8,7 +8,7 @@
 use std::fmt::Debug;
 use std::ops::{Index, IndexMut};
 
-use crate::method::state::{State, add_multiple, add_product, combine};
+use crate::method::state::{Columns, add_multiple, add_product, combine};
 use crate::method::tableau::MAX_STAGES;
 
 /// The stages of a step, and room beside them.
@@ -124,7 +124,7 @@ pub trait Store: Clone + Debug + PartialEq + Index<usize, Output = f64> + IndexM
     }
 }
 
-impl<const N: usize> Store for State<N> {
+impl<const N: usize, const Q: usize> Store for Columns<N, Q> {
     type Kept = ();
     const KEEPS: bool = false;
     const FEW: usize = usize::MAX;
@@ -135,15 +135,15 @@ impl<const N: usize> Store for State<N> {
     }
     #[inline(always)]
     fn size(&self) -> usize {
-        N
+        N * Q
     }
     #[inline(always)]
     fn parts(&self) -> &[f64] {
-        &self.data.0[0]
+        self.data.0.as_flattened()
     }
     #[inline(always)]
     fn parts_mut(&mut self) -> &mut [f64] {
-        &mut self.data.0[0]
+        self.data.0.as_flattened_mut()
     }
     #[inline(always)]
     fn set(&mut self, other: &Self) {

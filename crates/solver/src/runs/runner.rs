@@ -27,7 +27,7 @@ use crate::runs::runner::last_part::last_part;
 use crate::runs::runner::watcher::FixedWatcher;
 use crate::system::{Fixed, PerGuard, Room, System};
 
-pub(crate) use crate::runs::runner::watcher::Watcher;
+pub(crate) use crate::runs::runner::watcher::{Watcher, switch_event};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -80,62 +80,26 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> From<End<Fixed<'_, S
 #[inline]
 pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
     system: &S,
-    (mode, s, state): (S::Mode, f64, &S::State),
+    start: (S::Mode, f64, &S::State),
     end: f64,
     options: &Options,
     observer: &mut O,
 ) -> Result<End<S>, RunError> {
-    options.validate()?;
-    if !(s.is_finite() && end > s) {
-        return Err(RunError::Span { from: s, to: end });
-    }
-    let n = state.size();
-    let room = || S::State::room(n);
-    let row = || PerGuard::<S, f64>::of(0, 0.0);
-    let mut runner = Runner {
-        system,
-        options,
-        observer,
-        end,
-        due: f64::INFINITY,
-        clock: Clock::new(s),
-        phase: Phase::new(mode),
-        state: state.clone(),
-        rest: room(),
-        slope: room(),
-        other_h: None,
-        h: 0.0,
-        controller: Controller::new(),
-        zeno: Zeno::new(s),
-        fired: List::of(0, 0),
-        notes: Vec::new(),
-        notices: Notices::new(),
-        statistics: Statistics { guards: 1, ..Statistics::default() },
-        room: Room::new(n),
-        nodes: [row(), row(), row(), row(), row(), row()],
-        sure: List::of(0, true),
-        instant: Instant::new(n),
+    let mut runner = Runner::<S, O>::at::<M>(system, start, end, options, observer)?;
+    let (mut step, mut event) = (StepOf::new(runner.room.n), None);
+    let outcome = loop {
+        if let Some(outcome) = runner.go_on::<M>(&mut step, &mut event)? {
+            break outcome;
+        }
     };
-    runner.phase.enter(system, mode, (s, state), &mut runner.fired)?;
-    // A clock that is due at the start fires there.
-    runner.due = runner.next_due(s.next_down())?;
-    let outcome = runner.run::<M>()?;
-    runner.observer.on_end(runner.phase.mode, runner.clock.s, &runner.state);
-    Ok(End {
-        outcome,
-        s: runner.clock.s,
-        mode: runner.phase.mode,
-        state: runner.state,
-        decided: !runner.phase.sampled,
-        statistics: runner.statistics,
-    })
+    Ok(runner.end(outcome))
 }
 
 /// The state of a run between two steps.
-pub(super) struct Runner<'a, S: System, O> {
+pub(crate) struct Runner<'a, S: System, O> {
     pub(super) system: &'a S,
     pub(super) options: &'a Options,
-    pub(super) observer: &'a mut O,
+    pub(crate) observer: &'a mut O,
     pub(super) end: f64,
     /// The next time of a clock.
     due: f64,
@@ -168,32 +132,92 @@ pub(super) struct Runner<'a, S: System, O> {
     instant: Instant<S>,
 }
 
-impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
-    fn run<M: Method>(&mut self) -> Result<Outcome, RunError> {
-        self.refresh_slope()?;
-        self.h = match (self.options.step_size, self.options.first_step) {
-            (StepSize::Fixed(h), _) | (StepSize::Adaptive, Some(h)) => h,
-            (StepSize::Adaptive, None) => self.estimate_first_step::<M>(),
+impl<'a, S: System, O: Watcher<S>> Runner<'a, S, O> {
+    /// A run that has not moved yet.
+    #[inline]
+    pub(crate) fn at<M: Method>(
+        system: &'a S,
+        (mode, s, state): (S::Mode, f64, &S::State),
+        end: f64,
+        options: &'a Options,
+        observer: &'a mut O,
+    ) -> Result<Self, RunError> {
+        options.validate()?;
+        if !(s.is_finite() && end > s) {
+            return Err(RunError::Span { from: s, to: end });
+        }
+        let n = state.size();
+        let room = || S::State::room(n);
+        let row = || PerGuard::<S, f64>::of(0, 0.0);
+        let mut runner = Runner {
+            system,
+            options,
+            observer,
+            end,
+            due: f64::INFINITY,
+            clock: Clock::new(s),
+            phase: Phase::new(mode),
+            state: state.clone(),
+            rest: room(),
+            slope: room(),
+            other_h: None,
+            h: 0.0,
+            controller: Controller::new(),
+            zeno: Zeno::new(s),
+            fired: List::of(0, 0),
+            notes: Vec::new(),
+            notices: Notices::new(),
+            statistics: Statistics { guards: 1, ..Statistics::default() },
+            room: Room::new(n),
+            nodes: [row(), row(), row(), row(), row(), row()],
+            sure: List::of(0, true),
+            instant: Instant::new(n),
         };
-        let (mut step, mut event) = (StepOf::new(self.room.n), None);
-        loop {
-            if let Some(outcome) = self.advance::<M>(&mut step, &mut event)? {
-                return Ok(outcome);
-            }
-            if let Some(event) = &event
-                && let Some(outcome) = self.switch(event)?
-            {
-                return Ok(outcome);
-            }
-            // Behind an event, no step shows what remains within rounding.
-            if self.clock.until(self.end) <= 0.0 || event.is_some() && self.clock.is_at(self.end) {
-                self.clock.arrive(self.end);
-                check_finite(self.clock.s, self.state.parts())?;
-                return Ok(Outcome::ReachedEnd);
-            }
-            if self.observer.stops(self.clock.s) {
-                return Ok(Outcome::Stopped);
-            }
+        runner.phase.enter(system, mode, (s, state), &mut runner.fired)?;
+        // A clock that is due at the start fires there.
+        runner.due = runner.next_due(s.next_down())?;
+        runner.refresh_slope()?;
+        runner.h = match (options.step_size, options.first_step) {
+            (StepSize::Fixed(h), _) | (StepSize::Adaptive, Some(h)) => h,
+            (StepSize::Adaptive, None) => runner.estimate_first_step::<M>(),
+        };
+        Ok(runner)
+    }
+
+    /// Goes on by a step, and through the switches at its end. Returns the outcome if the run ends.
+    #[inline]
+    pub(crate) fn go_on<M: Method>(
+        &mut self,
+        step: &mut StepOf<S::State>,
+        event: &mut Option<Event<S>>,
+    ) -> Result<Option<Outcome>, RunError> {
+        if let Some(outcome) = self.advance::<M>(step, event)? {
+            return Ok(Some(outcome));
+        }
+        if let Some(event) = event
+            && let Some(outcome) = self.switch(event)?
+        {
+            return Ok(Some(outcome));
+        }
+        // Behind an event, no step shows what remains within rounding.
+        if self.clock.until(self.end) <= 0.0 || event.is_some() && self.clock.is_at(self.end) {
+            self.clock.arrive(self.end);
+            check_finite(self.clock.s, self.state.parts())?;
+            return Ok(Some(Outcome::ReachedEnd));
+        }
+        Ok(self.observer.stops(self.clock.s).then_some(Outcome::Stopped))
+    }
+
+    /// The end of the run.
+    pub(crate) fn end(&mut self, outcome: Outcome) -> End<S> {
+        self.observer.on_end(self.phase.mode, self.clock.s, &self.state);
+        End {
+            outcome,
+            s: self.clock.s,
+            mode: self.phase.mode,
+            state: self.state.clone(),
+            decided: !self.phase.sampled,
+            statistics: self.statistics,
         }
     }
 

@@ -2,11 +2,9 @@
 
 use std::fmt;
 
-use num_dual::Dual64;
-
 use crate::hybrid::{Guard, ReadableSystem, Schedule};
 use crate::method::State;
-use crate::sensitivity::{Change, Differentiable};
+use crate::sensitivity::{Change, Differentiable, along};
 use crate::sliding::control::{self, Row, View};
 use crate::sliding::decision::{Cause, condition, decide};
 use crate::sliding::sides::{Refusal, Side, SlidingMode};
@@ -304,8 +302,7 @@ where
 ///
 /// While the state slides, its changes stay tangential to the surface: those across it vanish where
 /// it begins to slide.
-impl<S, const N: usize, const K: usize, const G: usize, const P: usize> Differentiable<N, G, P>
-    for Filippov<S, K, G>
+impl<S, const N: usize, const K: usize, const G: usize> Differentiable<N, G> for Filippov<S, K, G>
 where
     S: Switched<N, K, G>,
 {
@@ -332,9 +329,4 @@ where
         let after = if guard < 2 * K { y } else { self.0.reset(mode.own, guard, s, &y) };
         after.map(|y| y.eps).into()
     }
-}
-
-/// Time and state with their changes.
-fn along<const N: usize>(s: f64, y: &State<N>, by: &Change<N>) -> (Dual64, [Dual64; N]) {
-    (Dual64::new(s, by.s), std::array::from_fn(|i| Dual64::new(y[i], by.y[i])))
 }

@@ -37,6 +37,7 @@ impl Side {
 /// A transition cannot fail, so a refusal is a mode. Its field is NaN, which ends the run with an
 /// error, and the switch to the mode says why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The equations for the multipliers are singular: infinitely many of them hold the state on
     /// the surfaces.

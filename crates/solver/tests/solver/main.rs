@@ -46,6 +46,7 @@ mod plateaus;
 mod properties;
 mod reports;
 mod runs;
+mod sensitivities;
 #[cfg(feature = "serde")]
 mod serialization;
 mod singular;

@@ -9,6 +9,7 @@ mod goes_on;
 mod observers;
 mod pairs;
 mod samples;
+mod steps;
 mod unlocated;
 mod weighted;
 

@@ -129,6 +129,7 @@ impl Euler {
 
 /// Input from which no subdivision can be made, or with which none can be verified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SubdivisionError {
     /// The window's corners are not finite, or not in order.
     #[error("the window from ({}, {}) to ({}, {}) has no area", low.x, low.y, high.x, high.y)]

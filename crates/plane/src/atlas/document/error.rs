@@ -11,6 +11,7 @@ use crate::sheet::TooNarrow;
 ///
 /// Places are named as in the document, as `boundaries[3].points[0]`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AtlasDocumentError {
     /// The document has another layout.
     #[error("schema = {found:?}: expected {SCHEMA:?}")]

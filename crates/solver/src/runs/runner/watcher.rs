@@ -30,17 +30,7 @@ where
     const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
     #[inline(always)]
     fn on_switch(&mut self, note: &Note<Fixed<'_, S, N, G>>) {
-        self.0.on_switch(&SwitchEvent {
-            s: note.s,
-            guard: note.guard,
-            simultaneous: mask(&note.simultaneous),
-            flatness: note.flatness,
-            jump: note.jump(),
-            from: note.from,
-            to: note.to,
-            before: note.before,
-            after: note.after,
-        });
+        self.0.on_switch(&switch_event(note));
     }
     #[inline(always)]
     fn on_grazing(&mut self, grazing: &Grazing<S::Mode>) {
@@ -73,6 +63,24 @@ where
     #[inline(always)]
     fn on_end(&mut self, mode: S::Mode, s: f64, state: &State<N>) {
         self.0.on_end(mode, s, state);
+    }
+}
+
+/// The event of a note.
+#[inline(always)]
+pub(crate) fn switch_event<S: HybridSystem<N, G>, const N: usize, const G: usize>(
+    note: &Note<Fixed<'_, S, N, G>>,
+) -> SwitchEvent<S::Mode, N> {
+    SwitchEvent {
+        s: note.s,
+        guard: note.guard,
+        simultaneous: mask(&note.simultaneous),
+        flatness: note.flatness,
+        jump: note.jump(),
+        from: note.from,
+        to: note.to,
+        before: note.before,
+        after: note.after,
     }
 }
 

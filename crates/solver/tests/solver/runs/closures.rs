@@ -26,7 +26,7 @@ fn closures_are_a_system() {
 fn without_a_transition_events_are_only_noted() {
     let circle = |_s: f64, y: &State<2>| State::from([y[1], -y[0]]);
     let plain = Closures::new(circle);
-    let noted = plain.guards([Guard::new(Direction::Either)], |_s, y| [y[0]]);
+    let noted = Closures::new(circle).guards([Guard::new(Direction::Either)], |_s, y| [y[0]]);
     let start = at(0.0, [0.5, 1.0]);
     let mut log = Log::default();
     let one = run(Dop853, &plain, start, 10.0, &Options::default(), &mut ()).unwrap();

@@ -8,6 +8,7 @@
 use std::f64::consts::TAU;
 
 use stickslip_solver::margin::Place;
+use stickslip_solver::method::Columns;
 use stickslip_solver::sensitivity::sensitivities;
 use stickslip_solver::sliding::{Filippov, Side};
 use stickslip_solver::{Dop853, Number, Options, Start, State};
@@ -103,13 +104,12 @@ fn fundamental(t: f64) -> nalgebra::Matrix2<f64> {
 /// The change of the state over a period.
 fn monodromy(force: f64, options: &Options) -> (nalgebra::Matrix2<f64>, usize) {
     let start = settled(force, options);
-    let unit = [State::from([1.0, 0.0]), State::from([0.0, 1.0])];
+    let [x, v] = [start.state[0], start.state[1]];
+    let columns = Columns::from([[x, v], [1.0, 0.0], [0.0, 1.0]]);
     let system = Filippov(Driven(force));
-    let found =
-        sensitivities::<_, _, 2, 2, 2, 6>(Dop853, &system, start, unit, start.s + PERIOD, options)
-            .unwrap();
-    let columns = found.end.state_derivatives;
-    (nalgebra::Matrix2::from_columns(&columns), found.switches.len())
+    let (from, end) = ((start.mode, start.s), start.s + PERIOD);
+    let found = sensitivities(Dop853, &system, from, columns, end, options).unwrap();
+    (found.end.state.fixed_columns::<2>(1).into_owned(), found.switches.len())
 }
 
 #[test]
