@@ -586,18 +586,21 @@ def test_exceptions_of_those_who_watch(make) -> None:
 @pytest.mark.parametrize("make", [lambda: ball(60.0, max_switches=60, max_step=1e-3), plain_ball])
 def test_an_interrupted_trace_can_go_on(make) -> None:
     family = make()
-    timer = threading.Timer(0.5, _thread.interrupt_main)
-    timer.start()
-    began = time.monotonic()
+    pressed: list[float] = []
+
+    def press(*_: object) -> None:
+        if not pressed:
+            pressed.append(time.monotonic())
+            _thread.interrupt_main()
+
+    options = {"options": TraceOptions(cells=16), "verify": FEW}
     with pytest.raises(KeyboardInterrupt) as stopped:
-        trace_family(family, HEIGHTS, RESTITUTIONS, options=TraceOptions(cells=16), verify=FEW)
-    assert time.monotonic() - began < 10
-    timer.join()
+        trace_family(family, HEIGHTS, RESTITUTIONS, **options, progress=press)
+    assert time.monotonic() - pressed[0] < 10
     assert isinstance(stopped.value, TraceInterrupted)
     begun = stopped.value.atlas
     assert not begun.finished
     if make is plain_ball:
-        options = {"options": TraceOptions(cells=16), "verify": FEW}
         whole = trace_family(ball(), HEIGHTS, RESTITUTIONS, **options)
         assert begun.resume(ball()).document == whole.document
 

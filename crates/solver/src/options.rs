@@ -13,7 +13,8 @@ pub enum StepSize {
     Fixed(f64),
 }
 
-/// Options of a run. [`Options::validate`] checks them when the run starts.
+/// Options of a run. [`Options::validate`] checks them when the run starts. Later versions may have
+/// more of them, so write `..Options::default()`.
 ///
 /// ```
 /// use stickslip_solver::Options;

@@ -1,5 +1,7 @@
 //! Tracing and verifying in turn: where runs disagree with the regions, the tracer looks again.
 
+use stickslip_solver::InvalidValue;
+
 use crate::atlas::{Atlas, AtlasOf, AtlasOptions};
 use crate::draft::{Draft, Own};
 use crate::effort::Effort;
@@ -147,6 +149,8 @@ impl<'w, E> Surveyor<'w, E> {
         E: Executor<F>,
         'w: 'f,
     {
+        let rounds = self.options.rounds;
+        InvalidValue::check("rounds", rounds, "at least 1", rounds >= 1)?;
         let tracer = Tracer::new(family, window, &self.options.trace)?.watched(self.watch);
         self.watch.report(Progress::Now { what: "counting boundaries" });
         tracer.require_few(&self.executor, &self.watch)?;

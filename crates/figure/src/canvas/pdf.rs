@@ -85,7 +85,8 @@ fn packed(data: &[u8]) -> Vec<u8> {
 }
 
 impl Page {
-    /// Draws a group. Those of an [`Svg`] are opaque and have no clips, masks and filters.
+    /// Draws a group. Those of an [`Svg`] are opaque and have no masks and filters; what is clipped
+    /// is an image, by the rectangle that it fills.
     fn group(&mut self, group: &Group) {
         for node in group.children() {
             match node {

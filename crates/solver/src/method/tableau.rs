@@ -31,7 +31,12 @@ pub struct Tableau {
     pub dense: [[f64; MAX_STAGES]; 4],
 }
 
-/// An embedded pair: its coefficients and their properties.
+/// An embedded pair: its coefficients and their properties. Other pairs than [`Dop853`] and
+/// [`Dopri5`] can be added, explicit ones with up to [`MAX_STAGES`] stages and a dense output of
+/// this form.
+///
+/// [`Dop853`]: crate::Dop853
+/// [`Dopri5`]: crate::Dopri5
 pub trait Method: Copy {
     /// The usual name of the pair.
     const NAME: &'static str;

@@ -274,3 +274,11 @@ fn every_point_is_decided() {
     }
     assert_eq!(atlas.decide(&family, &Point::new(1.1, 0.0)).unwrap(), None);
 }
+
+#[test]
+fn a_survey_of_no_rounds_is_refused() {
+    let surveyor =
+        Surveyor { options: AtlasOptions { rounds: 0, ..options() }, ..Surveyor::default() };
+    let error = surveyor.atlas(&Shapes { hole: 0.0 }, &WINDOW).unwrap_err();
+    assert_eq!(error.to_string(), "rounds = 0 is out of range; expected at least 1");
+}
