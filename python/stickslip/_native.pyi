@@ -1,5 +1,6 @@
 """What crates/python exports; the modules that use it document shapes and units."""
 
+import os
 from collections.abc import Callable
 from typing import Any, TypeAlias, final
 

@@ -27,6 +27,17 @@ def test_one_collision() -> None:
     assert np.abs(total - collision.contact_time).max() < 1e-14
 
 
+def test_an_animation_is_what_its_name_says(tmp_path: Path) -> None:
+    collision = stickslip.collide(18, 0.5)
+    film = tmp_path / "film.gif"
+    collision.animate(film)
+    assert film.read_bytes().startswith(b"GIF89a")
+    with pytest.raises(ValueError, match=r"expected a name that ends in \.gif or \.mp4"):
+        collision.animate(tmp_path / "film.avi")
+    with pytest.raises(OSError, match="cannot be written"):
+        collision.animate(tmp_path / "nowhere" / "film.gif")
+
+
 def test_history_has_the_shape_of_its_times() -> None:
     collision = stickslip.collide(63, 0.5)
     assert collision.history().dtype == MOMENT

@@ -4,7 +4,8 @@
 //! a [gallery](pictures::gallery) of many, a [map](pictures::map), a computed
 //! [grid](pictures::grid), an [atlas](pictures::atlas), a [chart](pictures::chart) of series; with
 //! the features `practice` and `studies` also a fit, errors of time steps, and studies. Each
-//! results in an [`Svg`], whose document is a file, and [`png()`] and [`pdf()`] make the same picture.
+//! results in an [`Svg`], whose document is a file, and [`png()`] and [`pdf()`] make the same
+//! picture.
 //!
 //! Pictures are made of the parts in [`canvas`]. Start reading in [`canvas::panel`] (axes, and what
 //! is drawn against them), then [`pictures::course`] and [`pictures::collision`] (a picture).
