@@ -10,11 +10,20 @@ use stickslip_figure::{Svg, pdf};
 use crate::examples::all;
 use crate::svg::FONT;
 
+/// Whether a group has an image and nothing else.
+fn is_image(group: &Group) -> bool {
+    match group.children() {
+        [Node::Image(_)] => true,
+        [Node::Group(group)] => is_image(group),
+        _ => false,
+    }
+}
+
 /// The shapes and images of a group. Nothing in it may be of a kind that is not written.
 fn count(group: &Group, name: &str) -> (usize, usize) {
     // An image is clipped by the rectangle that it fills.
-    let is_image = matches!(group.children(), [Node::Image(_)]);
-    assert!((is_image || group.clip_path().is_none()) && group.mask().is_none(), "{name}");
+    assert!(is_image(group) || group.clip_path().is_none(), "{name}");
+    assert!(group.mask().is_none(), "{name}");
     assert!(group.filters().is_empty() && group.opacity().get() == 1.0, "{name}");
     group.children().iter().fold((0, 0), |(shapes, images), node| {
         let more = match node {
