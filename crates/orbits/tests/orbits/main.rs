@@ -6,6 +6,7 @@ mod branches;
 mod buck;
 mod curves;
 mod impact;
+mod native;
 mod planted;
 mod published;
 mod refused;
