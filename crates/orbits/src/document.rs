@@ -240,15 +240,17 @@ impl Document<CurveRecord> {
     #[must_use]
     pub fn of_curve(orbits: &Orbits, name: &str, curve: &SpecialCurve) -> Self {
         let system = orbits.system();
-        let meeting = |&Meeting { kind, segment, behind, ref orbit }: &Meeting| {
-            let orbit = OrbitRecord::new(system, orbit);
-            Meeting { kind, segment, behind, orbit }
+        let meeting = |it: &Meeting| {
+            let Meeting { kind, segment, behind, tangent, .. } = *it;
+            let (name, orbit) = (it.name.clone(), OrbitRecord::new(system, &it.orbit));
+            Meeting { name, kind, segment, behind, tangent, orbit }
         };
         let curve = SpecialCurve {
             kind: curve.kind,
             parameters: curve.parameters.map(|place| system.parameters[place].name.clone()),
             window: curve.window,
             points: curve.points.iter().map(|it| OrbitRecord::new(system, it)).collect(),
+            tangents: curve.tangents.clone(),
             meetings: curve.meetings.iter().map(meeting).collect(),
             closed: curve.closed,
             objection: curve.objection.clone(),

@@ -62,6 +62,7 @@ mod itinerary;
 mod multipliers;
 mod newton;
 mod orbit;
+mod regions;
 mod settle;
 
 pub use attractors::{Attractor, Basins, Column, Exponents, Section, SectionPoint};
@@ -71,6 +72,7 @@ pub use error::OrbitError;
 pub use find::{Guess, Orbits};
 pub use itinerary::Leg;
 pub use orbit::{Obstacle, Orbit, Segment, Verdict};
+pub use regions::{FollowedOrbits, OrbitAtlas, OrbitBoundary, RegionOptions};
 pub use stickslip_expression::InvalidValue;
 
 #[doc = include_str!("../README.md")]

@@ -88,7 +88,7 @@ impl Along<'_> {
     }
 
     /// The functions that may change their sign where an obstacle begins.
-    fn margins(
+    pub fn margins(
         &self,
         from: &Point,
         obstacle: &Obstacle,
@@ -184,6 +184,19 @@ impl Along<'_> {
         }
     }
 
+    /// What a margin is measured by.
+    pub fn margin_size(&self, margin: &Margin, point: &Point) -> Option<f64> {
+        let (Margin::Inner { segment, rule }
+        | Margin::AtEnd { segment, rule }
+        | Margin::AtStart { segment, rule }) = *margin
+        else {
+            return Some(0.0);
+        };
+        let both = [Margin::AtStart { segment, rule }, Margin::AtEnd { segment, rule }];
+        let [one, other] = both.map(|it| self.margin(&it, point));
+        Some(one?.abs().max(other?.abs()))
+    }
+
     /// The condition of a rule of the mode of a segment, so that it acts as it falls.
     fn condition(
         &self,
@@ -236,7 +249,8 @@ impl Along<'_> {
 }
 
 /// A function along a branch that changes its sign where an obstacle begins.
-pub(super) enum Margin {
+#[derive(PartialEq)]
+pub(crate) enum Margin {
     /// The least extremum of a rule's condition inside a segment.
     Inner { segment: usize, rule: usize },
     /// The condition at the end of a segment.

@@ -2,16 +2,19 @@
 //!
 //! What is zero along a branch at a special orbit is one more equation, and a second parameter one
 //! more unknown. Its derivatives are differences of its values, which are computed once for each
-//! step: they make the search a little slower, and its result no less accurate.
+//! step: they make the search a little slower, and its result no less accurate. `meetings` locates
+//! where something else changes too.
 
-use nalgebra::{DMatrix, DVector};
+mod meetings;
+
+use nalgebra::{DMatrix, DVector, Vector2};
 use stickslip_expression::InvalidValue;
+use stickslip_tracer::{Cubic, Node};
 
 use super::borders::{Borders, null_vectors};
 use super::change::Margin;
-use super::locate::zero;
 use super::point::{Along, LEAST_TURN, NO_DIRECTION, Point};
-use super::test::Test;
+use super::test::{Test, has_torus};
 use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;
@@ -21,6 +24,8 @@ use crate::orbit::Orbit;
 
 /// How far unknowns are moved for differences.
 const APART: f64 = 1e-5;
+/// Halvings of a step for closer points, at most.
+const DEEPEST: usize = 10;
 
 /// Special orbits of one kind over two parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +39,9 @@ pub struct SpecialCurve<P = usize, O = Orbit> {
     pub window: [[f64; 2]; 2],
     /// The orbits, in the order of the curve.
     pub points: Vec<O>,
+    /// The direction of the curve at each of them, of length 1 in the plane of the parameters.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub tangents: Vec<[f64; 2]>,
     /// Orbits at which something else changes too, in the order of the curve.
     pub meetings: Vec<Meeting<O>>,
     /// Whether the curve comes back to its start.
@@ -46,9 +54,17 @@ pub struct SpecialCurve<P = usize, O = Orbit> {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Meeting<O = Orbit> {
-    /// What changes besides. On a curve of `neimark-sacker`, `fold` is the resonance 1:1 and `flip`
-    /// the resonance 1:2.
+    /// What it is called: `resonance-1-1` where both multipliers of a torus are 1, `resonance-1-2`
+    /// where they are −1, `double-graze`, `cusp`, and otherwise what changes and what is followed,
+    /// as `fold-grazing`.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub name: String,
+    /// What changes besides.
     pub kind: SpecialKind,
+    /// The direction of the curve there, of length 1 in the plane of the parameters; that towards
+    /// the place if it is a cusp.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub tangent: [f64; 2],
     /// The segment at which it happens, if it happens at one.
     pub segment: Option<usize>,
     /// The number of points of the curve before it.
@@ -75,6 +91,14 @@ struct Follower<'a> {
     along: Along<'a>,
     special: &'a SpecialOrbit,
     window: [[f64; 2]; 2],
+    /// How far a cubic between two points may be from the curve, if it matters.
+    interpolation: Option<f64>,
+}
+
+/// An orbit of a curve with its direction.
+struct CurvePoint {
+    orbit: Orbit,
+    tangent: [f64; 2],
 }
 
 impl Orbits {
@@ -89,6 +113,19 @@ impl Orbits {
         parameters: [usize; 2],
         window: [[f64; 2]; 2],
         options: &BranchOptions,
+    ) -> Result<SpecialCurve, OrbitError> {
+        self.curve_within(special, parameters, window, options, None)
+    }
+
+    /// As [`Self::curve`], with so many points that the cubics between them are as near to the
+    /// curve as this.
+    pub(crate) fn curve_within(
+        &self,
+        special: &SpecialOrbit,
+        parameters: [usize; 2],
+        window: [[f64; 2]; 2],
+        options: &BranchOptions,
+        interpolation: Option<f64>,
     ) -> Result<SpecialCurve, OrbitError> {
         options.validate()?;
         self.compiled.with(&special.orbit.parameters)?;
@@ -109,18 +146,26 @@ impl Orbits {
         let active = [0, 1].map(|k| (parameters[k], window[k][1] - window[k][0]));
         let draft = special.orbit.draft();
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
-        let along = Along { orbits: self, equations: &equations, parameter: one, range: window[0] };
-        let follower = Follower { along, special, window };
+        let (equations, range) = (&equations, window[0]);
+        let along = Along { orbits: self, equations, parameter: one, range, judged: false };
+        let follower = Follower { along, special, window, interpolation };
         // The special orbit may have been written and read.
         let start = follower.ahead(&follower.first(&equations.place(&draft))?, 0.0, None)?;
         let ahead = follower.half(&start, options);
         let turned = Station { tangent: -&start.tangent, ..start.clone() };
-        let back = (!ahead.closed).then(|| follower.half(&turned, options));
-        let start = self.judged(&equations, &start.point.orbit)?;
+        let mut back = (!ahead.closed).then(|| follower.half(&turned, options));
+        if let Some(back) = &mut back {
+            let points = back.points.iter_mut().map(|it| &mut it.tangent);
+            for tangent in points.chain(back.specials.iter_mut().map(|it| &mut it.tangent)) {
+                *tangent = tangent.map(|it| -it);
+            }
+        }
+        let start = follower.finished(&start);
         let Half { points, specials: meetings, closed, objection } =
             ahead.joined(start, back, |meeting| &mut meeting.behind);
         let kind = special.kind;
-        Ok(SpecialCurve { kind, parameters, window, points, meetings, closed, objection })
+        let (points, tangents) = points.into_iter().map(|it| (it.orbit, it.tangent)).unzip();
+        Ok(SpecialCurve { kind, parameters, window, points, tangents, meetings, closed, objection })
     }
 }
 
@@ -275,8 +320,52 @@ impl Follower<'_> {
         Ok((last, true))
     }
 
+    /// The direction at a place in the plane of the parameters.
+    fn plane_tangent(&self, tangent: &DVector<f64>) -> Vector2<f64> {
+        let [x, y] = self.parameters(tangent);
+        let [across, up] = self.window.map(|[low, high]| high - low);
+        Vector2::new(x * across, y * up)
+    }
+
+    fn node(&self, station: &Station) -> Node {
+        let orbit = &station.point.orbit;
+        let [x, y] = [0, 1].map(|k| orbit.parameters[self.places()[k]]);
+        let tangent = self.plane_tangent(&station.tangent);
+        Node { point: Vector2::new(x, y), tangent: tangent.try_normalize(0.0).unwrap_or(tangent) }
+    }
+
+    /// The parameters, by their places in the system.
+    fn places(&self) -> [usize; 2] {
+        let active = self.along.equations.active();
+        [active[0], active[1]]
+    }
+
+    /// The orbit of a station with its verdict.
+    fn finished(&self, station: &Station) -> CurvePoint {
+        let own = &station.point.orbit;
+        let judged = self.along.orbits.judged(self.along.equations, own);
+        let orbit = judged.unwrap_or_else(|_| own.clone());
+        CurvePoint { orbit, tangent: self.node(station).tangent.into() }
+    }
+
+    /// The stations between two others that make cubics near enough.
+    fn between(&self, from: &Station, to: &Station, depth: usize, found: &mut Vec<Station>) {
+        let Some(most) = self.interpolation else { return };
+        let length = from.tangent.dot(&(&to.point.place - &from.point.place));
+        let Ok(middle) = self.ahead(from, 0.5 * length, None) else { return };
+        let [one, other, own] = [from, to, &middle].map(|it| self.node(it));
+        let near = distance(&Cubic::between(&one, &other), &own.point) <= most;
+        if depth < DEEPEST && !near {
+            self.between(from, &middle, depth + 1, found);
+        }
+        found.push(middle.clone());
+        if depth < DEEPEST && !near {
+            self.between(&middle, to, depth + 1, found);
+        }
+    }
+
     /// Follows a curve in one direction, without its first point.
-    fn half(&self, start: &Station, options: &BranchOptions) -> Half<Meeting> {
+    fn half(&self, start: &Station, options: &BranchOptions) -> Half<Meeting, CurvePoint> {
         let (mut half, mut last) = (Half::default(), start.clone());
         let mut step = options.first_step;
         loop {
@@ -297,24 +386,50 @@ impl Follower<'_> {
                     return half;
                 }
             };
-            let behind = half.points.len() + 1;
-            match self.meetings(&last, &next, behind) {
-                Ok(meetings) => half.specials.extend(meetings),
-                Err(error) => half.objection = Some(format!("a meeting is not located: {error}")),
-            }
+            let mut meetings = self.meetings(&last, &next).unwrap_or_else(|error| {
+                half.objection = Some(format!("a meeting is not located: {error}"));
+                Vec::new()
+            });
             let away = &start.point.place - &last.point.place;
             let along = last.tangent.dot(&away);
-            let closed = behind > 5
+            half.closed = half.points.len() > 4
                 && (0.0..=step).contains(&along)
                 && (away - along * &last.tangent).norm() < 0.2 * step
                 && last.tangent.dot(&start.tangent) > 0.9;
-            if closed {
-                half.closed = true;
+            // A curve of tori ends at its resonances.
+            let ends = self.special.kind == SpecialKind::NeimarkSacker && !has_torus(&next.point);
+            let resonance = ends.then(|| meetings.iter().position(|it| it.is_resonance()));
+            if let Some(place) = resonance {
+                match place {
+                    Some(place) => meetings.truncate(place + 1),
+                    None => half.objection = Some("multipliers cease to be complex".to_owned()),
+                }
+            }
+            let to = match (&resonance, half.closed) {
+                (Some(Some(place)), _) => &meetings[*place].station,
+                (_, true) => start,
+                _ => &next,
+            };
+            let mut between = Vec::new();
+            let mut from = &last;
+            for cusp in meetings.iter().filter(|it| it.kind == SpecialKind::Cusp) {
+                self.between(from, &cusp.station, 0, &mut between);
+                from = &cusp.station;
+            }
+            self.between(from, to, 0, &mut between);
+            let at =
+                |station: &Station| last.tangent.dot(&(&station.point.place - &last.point.place));
+            for meeting in &meetings {
+                let before = between.iter().filter(|it| at(it) < at(&meeting.station)).count();
+                let behind = half.points.len() + 1 + before;
+                half.specials.push(self.named(meeting, behind));
+            }
+            half.points.extend(between.iter().map(|it| self.finished(it)));
+            if half.closed || resonance == Some(None) {
                 return half;
             }
-            let orbit = self.along.orbits.judged(self.along.equations, &next.point.orbit);
-            half.points.push(orbit.unwrap_or_else(|_| next.point.orbit.clone()));
-            if is_last {
+            half.points.push(self.finished(to));
+            if is_last || ends {
                 return half;
             }
             if last.tangent.dot(&next.tangent) > 0.995 {
@@ -323,50 +438,19 @@ impl Follower<'_> {
             last = next;
         }
     }
+}
 
-    /// Where something else changes between two stations.
-    fn meetings(
-        &self,
-        from: &Station,
-        to: &Station,
-        behind: usize,
-    ) -> Result<Vec<Meeting>, OrbitError> {
-        let length = from.tangent.dot(&(&to.point.place - &from.point.place));
-        let slopes = &from.point.evaluation.slopes;
-        let equations = self.along.equations;
-        let bordered = |factor: f64| Borders::of(&equations.returning(slopes, factor));
-        let mut tests = Vec::new();
-        if self.special.kind != SpecialKind::Fold {
-            tests.push((SpecialKind::Fold, None, Test::Singular(bordered(1.0))));
+/// How far a point is from a cubic near its middle.
+fn distance(cubic: &Cubic, point: &Vector2<f64>) -> f64 {
+    let mut t = 0.5;
+    for _ in 0..4 {
+        let along = cubic.derivative(t);
+        let step = along.dot(&(point - cubic.at(t))) / along.norm_squared();
+        if step.is_finite() {
+            t = (t + step).clamp(0.0, 1.0);
         }
-        if self.special.kind != SpecialKind::Flip {
-            tests.push((SpecialKind::Flip, None, Test::Flip(bordered(-1.0))));
-        }
-        let own = self.tracked(&from.point)?;
-        for segment in 0..from.point.evaluation.ends.len() {
-            if !matches!(own, Tracked::Test(Test::Rate(own)) if own == segment) {
-                tests.push((SpecialKind::Grazing, Some(segment), Test::Rate(segment)));
-            }
-        }
-        let mut found: Vec<(f64, Meeting)> = Vec::new();
-        for (kind, segment, test) in tests {
-            let values = (test.value(&self.along, &from.point), test.value(&self.along, &to.point));
-            let (Some(one), Some(other)) = values else { continue };
-            if (one < 0.0) == (other < 0.0) || other == 0.0 {
-                continue;
-            }
-            let place = zero((length, one, other), |at| {
-                let station = self.ahead(from, at, None)?;
-                Ok(test.value(&self.along, &station.point).map(|value| (value, station)))
-            })?;
-            if let Some((at, station)) = place {
-                let orbit = self.along.orbits.judged(equations, &station.point.orbit)?;
-                found.push((at, Meeting { kind, segment, behind, orbit }));
-            }
-        }
-        found.sort_by(|one, other| one.0.total_cmp(&other.0));
-        Ok(found.into_iter().map(|(_, meeting)| meeting).collect())
     }
+    (point - cubic.at(t)).norm()
 }
 
 /// The direction of a curve, of length 1, towards the side of another one.

@@ -70,7 +70,7 @@ impl Closed {
         self.e * self.e * (-self.c * self.period()).exp()
     }
     /// How far the wall is between impacts, at least.
-    fn room(&self, v: f64) -> f64 {
+    pub fn room(&self, v: f64) -> f64 {
         let shift = (self.c * self.w).atan2(self.k - self.w * self.w);
         let (size, phase) = (self.a / self.impedance(), self.phase(v));
         let forced = |t: f64| size * (self.w * t + phase - shift).cos();

@@ -10,4 +10,5 @@ mod native;
 mod planted;
 mod published;
 mod refused;
+mod regions;
 mod sliding;

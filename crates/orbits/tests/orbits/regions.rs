@@ -1,0 +1,88 @@
+//! Regions of orbits against closed forms.
+
+use std::f64::consts::TAU;
+
+use stickslip_expression::System;
+use stickslip_orbits::{FollowedOrbits, Guess, OrbitAtlas, Orbits, RegionOptions};
+use stickslip_tracer::{Point, Unnamed};
+
+use crate::ball;
+use crate::impact::{self, Closed};
+
+/// How many roots of μ² − tr μ + det are outside the unit circle.
+fn outside(trace: f64, determinant: f64) -> usize {
+    let root = trace * trace / 4.0 - determinant;
+    if root < 0.0 {
+        return if determinant > 1.0 { 2 } else { 0 };
+    }
+    let all = [trace / 2.0 + root.sqrt(), trace / 2.0 - root.sqrt()];
+    all.into_iter().filter(|it| it.abs() > 1.0).count()
+}
+
+/// Compares an atlas with a closed form at random points.
+fn compare(atlas: &OrbitAtlas, count: usize, closed: impl Fn(Point) -> Vec<usize>) {
+    let window = *atlas.plane.window();
+    for curve in atlas.plane.curves() {
+        println!("{:?} {:?} {} nodes", curve.margin, curve.sides, curve.nodes.len());
+    }
+    println!("{}", format!("{:?}", atlas.doubts(&Unnamed)).chars().take(2000).collect::<String>());
+    assert!(atlas.agrees(), "{:?}", atlas.objection());
+    let mut random = fastrand::Rng::with_seed(54);
+    let mut seen: Vec<(FollowedOrbits, usize)> = Vec::new();
+    for _ in 0..count {
+        let part = Point::new(random.f64(), random.f64());
+        let point = window.low + part.component_mul(&window.extent());
+        let Some(label) = atlas.label(&point) else { panic!("{point:?} has no label") };
+        let mut exact = closed(point);
+        exact.sort_unstable();
+        assert_eq!(label.0, exact, "{point:?}");
+        match seen.iter_mut().find(|(own, _)| own == label) {
+            Some((_, count)) => *count += 1,
+            None => seen.push((label.clone(), 1)),
+        }
+    }
+    println!("{seen:?}");
+    assert!(seen.len() > 2, "{seen:?}");
+}
+
+#[test]
+fn an_impact_oscillator_has_its_regions() {
+    let orbits = impact::orbits();
+    let closed = Closed { w: 0.8, ..Closed::EXAMPLE };
+    let orbit = impact::near(&orbits, &closed, closed.speeds()[0], 1e-6).expect("an orbit");
+    let window = [[0.6, 1.4], [0.02, 1.2]];
+    let now = std::time::Instant::now();
+    let atlas = orbits.regions(&orbit, [4, 3], window, &RegionOptions::default()).expect("it");
+    println!("{:?}", now.elapsed());
+    compare(&atlas, 500, |point| {
+        let own = Closed { w: point.x, a: point.y, ..closed };
+        let speeds = own.speeds().into_iter().filter(|v| *v > 0.0 && own.room(*v) > 0.0);
+        speeds.map(|v| outside(own.trace(v), own.determinant())).collect()
+    });
+}
+
+#[test]
+fn a_ball_has_its_regions() {
+    let orbits = Orbits::new(&System::parse(ball::TEXT).expect("a system")).expect("orbits");
+    let itinerary = ["period", "bounce"];
+    let (time, state) = (Some(0.13), Some(&[0.0144, 0.5][..]));
+    let guess = Guess { time, state, itinerary: &itinerary, ..Guess::default() };
+    let orbit = orbits.find(&[0.02, TAU, 0.7], &guess).expect("an orbit");
+    let window = [[0.005, 0.05], [0.5, 0.9]];
+    let now = std::time::Instant::now();
+    let atlas = orbits.regions(&orbit, [0, 2], window, &RegionOptions::default()).expect("it");
+    println!("{:?}", now.elapsed());
+    compare(&atlas, 500, |point| {
+        let (a, r, w) = (point.x, point.y, TAU);
+        let cos = (1.0 - r) / (2.0 * (1.0 + r) * a * w);
+        let sine = (1.0 - cos * cos).sqrt();
+        let both = [sine, -sine].into_iter().filter(|it| it.is_finite());
+        let real = both.filter(|sine| {
+            let phase = sine.atan2(cos);
+            let height = |t: f64| a * sine + 0.5 * t - t * t / 2.0 - a * (w * t + phase).sin();
+            (1..20_000).all(|k| height(f64::from(k) / 20_000.0) > -1e-13)
+        });
+        let trace = |sine: f64| 1.0 + r * r - (1.0 + r) * (1.0 + r) * a * w * w * sine;
+        real.map(|sine| outside(trace(sine), r * r)).collect()
+    });
+}
