@@ -8,7 +8,7 @@
 //! orbits over two parameters, and `switched` goes over to another branch.
 
 mod borders;
-mod change;
+pub(crate) mod change;
 pub(crate) mod curve;
 mod locate;
 mod meet;
@@ -22,6 +22,7 @@ use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
+use change::Watches;
 use point::{Along, Point};
 
 /// How a branch is followed. Lengths are in unknowns of size 1: states over their largest value,
@@ -222,7 +223,14 @@ impl Orbits {
         let active = [(parameter, high - low)];
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
         let (range, judged) = ([low, high], true);
-        let along = Along { orbits: self, equations: &equations, parameter, range, judged };
+        let along = Along {
+            orbits: self,
+            equations: &equations,
+            parameter,
+            range,
+            judged,
+            watches: Watches::default(),
+        };
         let start = along.first(&draft)?;
         let ahead = self.half(&along, &start, options);
         let back = (!ahead.closed).then(|| self.half(&along, &start.turned(), options));

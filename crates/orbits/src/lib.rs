@@ -1,10 +1,11 @@
 //! Periodic orbits of piecewise-smooth ODEs, their stability, and where they change.
 //!
-//! [`Orbits`] has the orbits of a [`System`](stickslip_expression::System), which may be a text or
-//! functions of Python. An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
+//! [`Orbits`] has the orbits of a [`System`](stickslip_expression::System): a text, functions of
+//! Python, or a [system of Rust](stickslip_expression::NativeSystem). An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
 //! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
 //! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
 //! parameters, and [`Orbits::switched`] goes over to another branch at a flip or a branch point.
+//! [`Orbits::regions`] has where over two parameters the orbit exists and is stable, as an atlas.
 //! What runs lead to, orbit or not, is shown by [`Orbits::section`] and [`Orbits::diagram`] as
 //! points, by [`Orbits::exponents`] as Lyapunov exponents, and by [`Orbits::basins`] over initial
 //! values.
@@ -47,8 +48,8 @@
 //! The modules in reading order: `itinerary`, `orbit` and `error` are what is spoken of;
 //! `equations` has the equations of an orbit with a prescribed itinerary; `newton` solves them by
 //! the tracer's one search for points; `multipliers` and `admissible` judge what was found; `find`
-//! and `settle` have the ways to an orbit, `branch` follows it, `attractors` looks at runs that
-//! need not settle, and `document` writes orbits.
+//! and `settle` have the ways to an orbit, `branch` follows it, `regions` makes an atlas of it,
+//! `attractors` looks at runs that need not settle, and `document` writes orbits.
 
 mod admissible;
 mod attractors;
@@ -72,7 +73,7 @@ pub use error::OrbitError;
 pub use find::{Guess, Orbits};
 pub use itinerary::Leg;
 pub use orbit::{Obstacle, Orbit, Segment, Verdict};
-pub use regions::{FollowedOrbits, OrbitAtlas, OrbitBoundary, RegionOptions};
+pub use regions::{FollowedOrbits, OrbitAtlas, OrbitBoundary, OrbitNames, RegionOptions};
 pub use stickslip_expression::InvalidValue;
 
 #[doc = include_str!("../README.md")]

@@ -10,7 +10,9 @@ mod cover;
 mod pieces;
 
 use stickslip_expression::InvalidValue;
-use stickslip_tracer::{Atlas, AtlasOptions, Network, TraceStatistics, VerifyOptions, Window};
+use stickslip_tracer::{
+    Atlas, AtlasOptions, Names, Network, TraceStatistics, Unresolved, VerifyOptions, Vertex, Window,
+};
 
 use crate::branch::{BranchOptions, SpecialKind};
 use crate::error::OrbitError;
@@ -60,6 +62,38 @@ pub struct OrbitBoundary {
 /// The regions of an orbit.
 pub type OrbitAtlas = Atlas<FollowedOrbits, OrbitBoundary>;
 
+/// The names in an atlas of an orbit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OrbitNames {
+    /// The names of the two parameters.
+    pub axes: [String; 2],
+}
+
+impl Names<FollowedOrbits, OrbitBoundary> for OrbitNames {
+    fn axes(&self) -> [&str; 2] {
+        self.axes.each_ref().map(String::as_str)
+    }
+
+    fn text(&self, label: &FollowedOrbits) -> String {
+        label.text()
+    }
+
+    fn kind(&self, margin: &OrbitBoundary) -> &'static str {
+        margin.kind.name()
+    }
+
+    fn unresolved(&self, what: &Unresolved<FollowedOrbits>, _: &[Vertex<OrbitBoundary>]) -> String {
+        let point = match what {
+            Unresolved::Change { between, .. } => &between[0],
+            Unresolved::NoLength { point, .. }
+            | Unresolved::TooManyNodes { point }
+            | Unresolved::TooManyCurves { point } => point,
+            Unresolved::Stalled { .. } => return "a boundary ends".to_owned(),
+        };
+        format!("what changes at {} is not followed", self.place(point))
+    }
+}
+
 /// How the regions of an orbit are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionOptions {
@@ -77,7 +111,7 @@ impl Default for RegionOptions {
     fn default() -> Self {
         let verify = VerifyOptions { random_points: 200, near_points: 2, ..Default::default() };
         let verify = VerifyOptions { nearest: 1e-6, ..verify };
-        Self { cells: 5, tolerance: 1e-8, verify, branch: BranchOptions::default() }
+        Self { cells: 5, tolerance: 1e-7, verify, branch: BranchOptions::default() }
     }
 }
 
@@ -129,8 +163,11 @@ impl Orbits {
         self.require_range(orbit, one, across)?;
         self.require_range(orbit, other, up)?;
         let window = Window { low: [across[0], up[0]].into(), high: [across[1], up[1]].into() };
+        let now = std::time::Instant::now();
         let cover = Cover::new(self, orbit, parameters, [across, up], options)?;
+        eprintln!("cover {:?} {} branches", now.elapsed(), cover.branches.len());
         let drawn = pieces::draw(&cover, &window, options)?;
+        eprintln!("drawn {:?} {}", now.elapsed(), drawn.curves.len());
         let statistics = TraceStatistics { nodes: drawn.nodes, ..TraceStatistics::default() };
         let pieces::Drawn { curves, vertices, unresolved, .. } = drawn;
         let network = Network { window, curves, vertices, statistics, unresolved };

@@ -2,7 +2,7 @@
 //!
 //! What is zero along a branch at a special orbit is one more equation, and a second parameter one
 //! more unknown. Its derivatives are differences of its values, which are computed once for each
-//! step: they make the search a little slower, and its result no less accurate. `meetings` locates
+//! place: they make the search a little slower, and its result no less accurate. `meetings` locates
 //! where something else changes too.
 
 mod meetings;
@@ -12,7 +12,7 @@ use stickslip_expression::InvalidValue;
 use stickslip_tracer::{Cubic, Node};
 
 use super::borders::{Borders, null_vectors};
-use super::change::Margin;
+use super::change::{Margin, Watches};
 use super::point::{Along, LEAST_TURN, NO_DIRECTION, Point};
 use super::test::{Test, has_torus};
 use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
@@ -74,6 +74,7 @@ pub struct Meeting<O = Orbit> {
 }
 
 /// What is zero along a curve.
+#[derive(Clone)]
 enum Tracked {
     Test(Test),
     Margin(Margin),
@@ -84,6 +85,9 @@ enum Tracked {
 struct Station {
     point: Point,
     tangent: DVector<f64>,
+    /// What is zero there, and its derivatives, with which the next place is searched for.
+    tracked: Tracked,
+    gradient: DVector<f64>,
 }
 
 /// What a curve follows.
@@ -147,10 +151,17 @@ impl Orbits {
         let draft = special.orbit.draft();
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
         let (equations, range) = (&equations, window[0]);
-        let along = Along { orbits: self, equations, parameter: one, range, judged: false };
+        let along = Along {
+            orbits: self,
+            equations,
+            parameter: one,
+            range,
+            judged: false,
+            watches: Watches::default(),
+        };
         let follower = Follower { along, special, window, interpolation };
         // The special orbit may have been written and read.
-        let start = follower.ahead(&follower.first(&equations.place(&draft))?, 0.0, None)?;
+        let start = follower.ahead(&follower.station(equations.place(&draft), None)?, 0.0, None)?;
         let ahead = follower.half(&start, options);
         let turned = Station { tangent: -&start.tangent, ..start.clone() };
         let mut back = (!ahead.closed).then(|| follower.half(&turned, options));
@@ -245,13 +256,18 @@ impl Follower<'_> {
         DVector::from_iterator(place.len(), by)
     }
 
-    /// The station at which a curve starts.
-    fn first(&self, place: &DVector<f64>) -> Result<Station, OrbitError> {
-        let point = self.along.sketch(place.clone())?;
+    /// The station at a place, which goes on about in a direction.
+    fn station(
+        &self,
+        place: DVector<f64>,
+        towards: Option<&DVector<f64>>,
+    ) -> Result<Station, OrbitError> {
+        let point = self.along.sketch(place)?;
         let tracked = self.tracked(&point)?;
-        let gradient = self.gradient(&tracked, place);
-        let tangent = direction(&point.evaluation.slopes, &gradient, None);
-        tangent.map(|tangent| Station { point, tangent }).ok_or(NO_DIRECTION)
+        let gradient = self.gradient(&tracked, &point.place);
+        let tangent = direction(&point.evaluation.slopes, &gradient, towards);
+        let tangent = tangent.ok_or(NO_DIRECTION)?;
+        Ok(Station { point, tangent, tracked, gradient })
     }
 
     /// The station ahead of another one by a length along its tangent, or where a parameter has a
@@ -262,10 +278,9 @@ impl Follower<'_> {
         length: f64,
         fixed: Option<(usize, f64)>,
     ) -> Result<Station, OrbitError> {
-        let tracked = self.tracked(&from.point)?;
         let start = &from.point.place + length * &from.tangent;
-        let gradient = self.gradient(&tracked, &start);
-        let special = |place: &DVector<f64>| (self.value_at(&tracked, place), gradient.clone());
+        let special =
+            |place: &DVector<f64>| (self.value_at(&from.tracked, place), from.gradient.clone());
         let step = |place: &DVector<f64>| match fixed {
             None => (from.tangent.dot(&(place - &start)), from.tangent.clone()),
             Some((unknown, value)) => {
@@ -275,10 +290,7 @@ impl Follower<'_> {
             }
         };
         let found = correct(self.along.equations, &start, &[&special, &step])?;
-        let point = self.along.sketch(found.at)?;
-        let gradient = self.gradient(&tracked, &point.place);
-        let tangent = direction(&point.evaluation.slopes, &gradient, Some(&from.tangent));
-        tangent.map(|tangent| Station { point, tangent }).ok_or(NO_DIRECTION)
+        self.station(found.at, Some(&from.tangent))
     }
 
     /// The parameters at a place, in parts of the lengths of their ranges.

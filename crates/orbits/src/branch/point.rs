@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::borders::null_vectors;
+use super::change::Watches;
 use crate::equations::{Draft, Equations, Evaluation};
 use crate::error::OrbitError;
 use crate::find::Orbits;
@@ -24,6 +25,7 @@ pub(crate) struct Along<'a> {
     pub range: [f64; 2],
     /// Whether points have verdicts.
     pub judged: bool,
+    pub watches: Watches,
 }
 
 /// A point of a branch.

@@ -10,6 +10,7 @@ use super::point::{Along, Point};
 const NEAR: f64 = 1e-4;
 
 /// A function along a branch.
+#[derive(Clone)]
 pub(super) enum Test {
     /// How the parameter goes on.
     Fold,

@@ -1,11 +1,13 @@
 //! Orbits over the lines of a grid, and all orbits above a point.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 use stickslip_tracer::Point;
 
 use super::{FollowedOrbits, RegionOptions};
+use crate::branch::change::Watches;
 use crate::branch::point::Along;
-use crate::branch::{Branch, BranchOptions};
+use crate::branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
 use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
 use crate::find::Orbits;
@@ -142,27 +144,35 @@ impl<'a> Cover<'a> {
     fn crossings(&self, line: &LineBranch, value: f64) -> Result<Vec<Orbit>, OrbitError> {
         let place = self.parameters[line.over];
         let Branch { points, specials, closed, .. } = &line.branch;
-        let mut all: Vec<&Orbit> = Vec::with_capacity(points.len() + specials.len());
+        // Orbits in order, and whether the branch turns back there.
+        let mut all: Vec<(&Orbit, bool)> = Vec::with_capacity(points.len() + specials.len());
         let mut rest = specials.iter().peekable();
+        let known = |it: &'_ SpecialOrbit| it.kind == SpecialKind::Fold;
         for (k, orbit) in points.iter().enumerate() {
             while let Some(special) = rest.next_if(|it| it.behind <= k) {
-                all.push(&special.orbit);
+                all.push((&special.orbit, known(special)));
             }
-            all.push(orbit);
+            all.push((orbit, false));
         }
-        all.extend(rest.map(|it| &it.orbit));
+        all.extend(rest.map(|it| (&it.orbit, known(it))));
         if *closed {
-            all.extend(points.first());
+            all.extend(points.first().map(|it| (it, false)));
         }
-        let of = |orbit: &Orbit| orbit.parameters[place];
+        let of = |(orbit, _): (&Orbit, bool)| orbit.parameters[place];
         let mut found: Vec<Orbit> = Vec::new();
         for pair in all.windows(2) {
             let [low, high] = [of(pair[0]), of(pair[1])];
-            if (low - value) * (high - value) > 0.0 || low == high {
+            if (low < value && high < value) || (low > value && high > value) || low == high {
                 continue;
             }
+            // Beside a fold the parameter goes as a square.
             let part = (value - low) / (high - low);
-            let mut draft = mixed(pair, part);
+            let part = match (pair[0].1, pair[1].1) {
+                (true, false) => part.sqrt(),
+                (false, true) => 1.0 - (1.0 - part).sqrt(),
+                _ => part,
+            };
+            let mut draft = mixed([pair[0].0, pair[1].0], part);
             draft.parameters[place] = value;
             draft.parameters[self.parameters[1 - line.over]] = line.at;
             let orbit = self.at(&draft)?;
@@ -220,29 +230,54 @@ impl<'a> Cover<'a> {
         let active = [(parameter, high - low)];
         let equations = &Equations::new(system, draft.clone(), &active, options)?;
         let (range, judged) = ([value.min(target), value.max(target)], false);
-        let along = Along { orbits: self.orbits, equations, parameter, range, judged };
+        let along = Along {
+            orbits: self.orbits,
+            equations,
+            parameter,
+            range,
+            judged,
+            watches: Watches::default(),
+        };
         let mut last = along.first(&draft)?;
-        let ahead = last.tangent[last.tangent.len() - 1];
-        if (ahead < 0.0) != (target < value) {
+        if (last.tangent[equations.count()] < 0.0) != (target < value) {
             last = last.turned();
         }
+        let at_target = |place: &DVector<f64>| {
+            let found = Draft { parameters: orbit.parameters.clone(), ..equations.draft(place) };
+            let mut parameters = found.parameters.clone();
+            parameters[parameter] = target;
+            self.at(&Draft { parameters, ..found }).map(Some)
+        };
+        let unknown = equations.count();
         let mut step = self.options.first_step;
         for _ in 0..self.options.most_points {
-            match along.step(&last, step) {
-                Ok(next) => last = next,
+            let next = match along.step(&last, step) {
+                Ok(next) => next,
                 Err(_) if 0.5 * step >= self.options.shortest_step => {
                     step *= 0.5;
                     continue;
                 }
                 Err(error) => return Err(error),
+            };
+            let ahead = [&last, &next].map(|point| point.tangent[unknown]);
+            if (ahead[0] < 0.0) != (ahead[1] < 0.0) {
+                // The branch turns back, before or behind the target.
+                let length = last.tangent.dot(&(&next.place - &last.place));
+                let turn = along.zero(&last, (length, ahead[0], ahead[1]), |point| {
+                    Some(point.tangent[unknown])
+                })?;
+                let Some((_, turn)) = turn else { return Ok(None) };
+                let [from, to] = [&last, &turn].map(|point| along.value(&point.place));
+                let part = (target - from) / (to - from);
+                if !(0.0..=1.0).contains(&part) {
+                    return Ok(None);
+                }
+                let part = 1.0 - (1.0 - part).sqrt();
+                return at_target(&last.place.lerp(&turn.place, part));
             }
-            let at = along.value(&last.place);
+            last = next;
             if along.is_at_end(&last) {
-                let there = (at - target).abs() < (at - value).abs();
-                let draft = Draft { parameters: orbit.parameters.clone(), ..last.orbit.draft() };
-                let mut parameters = draft.parameters.clone();
-                parameters[parameter] = target;
-                return there.then(|| self.at(&Draft { parameters, ..draft })).transpose();
+                return at_target(&last.place);
             }
             step = (1.5 * step).min(self.options.longest_step);
         }
@@ -282,8 +317,8 @@ impl<'a> Cover<'a> {
 }
 
 /// The draft between two neighbours on a branch.
-fn mixed(pair: &[&Orbit], part: f64) -> Draft {
-    let [one, other] = [pair[0], pair[1]].map(Orbit::draft);
+fn mixed(pair: [&Orbit; 2], part: f64) -> Draft {
+    let [one, other] = pair.map(Orbit::draft);
     let mix = |x: f64, y: f64| x + part * (y - x);
     let all = |xs: &[f64], ys: &[f64]| xs.iter().zip(ys).map(|(x, y)| mix(*x, *y)).collect();
     let states = one.states.iter().zip(&other.states);

@@ -42,7 +42,8 @@ pub(super) fn draw(
         vertices: Vec::new(),
         unresolved: Vec::new(),
     };
-    let interpolation = 0.1 * options.tolerance * sheet.size;
+    // A point between makes the error 16 times less.
+    let interpolation = options.tolerance * sheet.size;
     for point in &cover.lost {
         sheet.doubt(*point);
     }
@@ -57,7 +58,8 @@ pub(super) fn draw(
         for special in &branch.specials {
             let beside = [special.behind.checked_sub(1), Some(special.behind)];
             let mut beside = beside.into_iter().flatten().filter_map(|k| branch.points.get(k));
-            let matters = beside.any(|it| it.is_admissible());
+            let inside = window.contains(&cover.place(&special.orbit));
+            let matters = inside && beside.any(|it| it.is_admissible());
             if !matters || known.iter().any(|curve| passes(curve, special, cover, sheet.size)) {
                 continue;
             }

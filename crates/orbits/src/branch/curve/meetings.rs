@@ -56,9 +56,8 @@ impl Follower<'_> {
     /// Where something else changes between two stations, in order.
     pub fn meetings(&self, from: &Station, to: &Station) -> Result<Vec<Met>, OrbitError> {
         let length = from.tangent.dot(&(&to.point.place - &from.point.place));
-        let own = self.tracked(&from.point)?;
         let mut found: Vec<(f64, Met)> = Vec::new();
-        for sought in self.sought(&own, from) {
+        for sought in self.sought(&from.tracked, from) {
             let values = [from, to].map(|station| self.sought_value(&sought, from, station));
             let [Some(one), Some(other)] = values else { continue };
             if (one < 0.0) == (other < 0.0) || other == 0.0 {
