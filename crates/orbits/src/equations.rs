@@ -337,6 +337,11 @@ impl Equations {
         product.iter().all(|it| it.is_finite()).then_some((product, trivial))
     }
 
+    /// The event at the end of a segment.
+    pub fn end(&self, segment: usize, parameters: &[f64], (s, state): (f64, &[f64])) -> Event {
+        self.events[segment].at(parameters, s, state)
+    }
+
     /// Whether the condition of an event is zero.
     pub fn is_at(&self, event: &Event) -> bool {
         let parts = (0..self.n).map(|k| (event.guard_by[k] * self.sizes[k]).abs());

@@ -159,7 +159,7 @@ impl Event {
     }
 
     /// What the rate of the condition is made of.
-    fn rate_size(&self) -> f64 {
+    pub fn rate_size(&self) -> f64 {
         let parts = (0..self.slopes.len()).map(|k| (self.guard_by[k] * self.slopes[k]).abs());
         let size = parts.fold(self.guard_by[self.slopes.len()].abs(), f64::max);
         // At a graze of one part, all of it vanishes: then it is as large as the slopes.
