@@ -30,13 +30,59 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A system of Rust has the same functions, once for all numbers:
+//!
+//! ```
+//! use stickslip_expression::{Jump, NativeSystem, System};
+//! use stickslip_orbits::{Guess, Orbits};
+//! use stickslip_solver::{Direction, Guard, Number};
+//!
+//! /// A neuron that is driven, and forgets its potential when it fires.
+//! struct Neuron;
+//!
+//! impl NativeSystem<1, 1, 1> for Neuron {
+//!     type Mode = ();
+//!
+//!     fn parameters(&self) -> [(&str, f64); 1] {
+//!         [("drive", 1.5)]
+//!     }
+//!     fn components(&self) -> [(&str, f64); 1] {
+//!         [("v", 0.0)]
+//!     }
+//!     fn modes(&self) -> &[()] {
+//!         &[()]
+//!     }
+//!     fn field<T: Number>(&self, (): (), drive: &[T; 1], _time: T, v: &[T; 1]) -> [T; 1] {
+//!         [drive[0] - v[0]]
+//!     }
+//!     fn guards(&self, (): ()) -> [(&str, Guard); 1] {
+//!         [("fires", Guard::new(Direction::Below))]
+//!     }
+//!     fn guard_values<T: Number>(&self, (): (), _: &[T; 1], _time: T, v: &[T; 1]) -> [T; 1] {
+//!         [-v[0] + 1.0]
+//!     }
+//!     fn transition<T: Number>(
+//!         &self, (): (), _: usize, _: &[T; 1], _time: T, _: &[T; 1],
+//!     ) -> Jump<(), T, 1> {
+//!         Jump::to((), [T::from(0.0)])
+//!     }
+//! }
+//!
+//! let orbits = Orbits::new(&System::of_native(&Neuron)?)?;
+//! let guess = Guess { itinerary: &["fires"], ..Guess::default() };
+//! let orbit = orbits.find(&[2.0], &guess)?;
+//! assert!((orbit.period - 2.0_f64.ln()).abs() < 1e-13 && orbit.is_admissible());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Accuracy
 //!
 //! Flows are computed with a tolerance of 1e-13. Beside closed forms, states and special values of
 //! parameters are right to 1e-11 of their size, and multipliers to 1e-11 of the largest one (the
 //! tests have the figures). A verdict is decided: along the whole orbit, no condition of another
-//! rule becomes negative. Where rounding hides whether one does, the verdict says so. On a branch
-//! each *point* is decided; what happens between two neighbours, and back again, is not seen.
+//! rule becomes negative, and that of its own rule does so at its end and not before. Where
+//! rounding hides whether one does, the verdict says so. On a branch each *point* is decided; what
+//! happens between two neighbours, and back again, is not seen.
 //!
 //! # What is refused
 //!

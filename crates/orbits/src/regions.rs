@@ -163,11 +163,8 @@ impl Orbits {
         self.require_range(orbit, one, across)?;
         self.require_range(orbit, other, up)?;
         let window = Window { low: [across[0], up[0]].into(), high: [across[1], up[1]].into() };
-        let now = std::time::Instant::now();
         let cover = Cover::new(self, orbit, parameters, [across, up], options)?;
-        eprintln!("cover {:?} {} branches", now.elapsed(), cover.branches.len());
         let drawn = pieces::draw(&cover, &window, options)?;
-        eprintln!("drawn {:?} {}", now.elapsed(), drawn.curves.len());
         let statistics = TraceStatistics { nodes: drawn.nodes, ..TraceStatistics::default() };
         let pieces::Drawn { curves, vertices, unresolved, .. } = drawn;
         let network = Network { window, curves, vertices, statistics, unresolved };

@@ -279,8 +279,6 @@ impl Follower<'_> {
         fixed: Option<(usize, f64)>,
     ) -> Result<Station, OrbitError> {
         let start = &from.point.place + length * &from.tangent;
-        let special =
-            |place: &DVector<f64>| (self.value_at(&from.tracked, place), from.gradient.clone());
         let step = |place: &DVector<f64>| match fixed {
             None => (from.tangent.dot(&(place - &start)), from.tangent.clone()),
             Some((unknown, value)) => {
@@ -289,8 +287,15 @@ impl Follower<'_> {
                 (place[unknown] - value, axis)
             }
         };
-        let found = correct(self.along.equations, &start, &[&special, &step])?;
-        self.station(found.at, Some(&from.tangent))
+        let near = |own: &Station, start: &DVector<f64>| {
+            let special =
+                |place: &DVector<f64>| (self.value_at(&own.tracked, place), own.gradient.clone());
+            correct(self.along.equations, start, &[&special, &step]).map(|found| found.at)
+        };
+        // With derivatives of the place before, and then with those of the place itself.
+        let found = self.station(near(from, &start)?, Some(&from.tangent))?;
+        let point = self.along.sketch(near(&found, &found.point.place)?)?;
+        Ok(Station { point, ..found })
     }
 
     /// The parameters at a place, in parts of the lengths of their ranges.

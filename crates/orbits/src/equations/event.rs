@@ -132,7 +132,9 @@ impl Event {
         let jump = &self.slopes_after - reset * &self.slopes - self.after_by.column(n);
         // A clock acts at its time, and a rule that changes nothing leaves differences as they are.
         let plain = by.amax() == 0.0 || jump.amax() == 0.0;
-        reset + if plain { DMatrix::zeros(n, n) } else { jump * by / self.rate() }
+        // A rate that rounding makes has no digit.
+        let rate = if self.rate().abs() <= STILL * self.rate_size() { 0.0 } else { self.rate() };
+        reset + if plain { DMatrix::zeros(n, n) } else { jump * by / rate }
     }
 
     /// Whether the formulas have the same values at another time.

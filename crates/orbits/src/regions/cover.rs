@@ -108,10 +108,8 @@ impl<'a> Cover<'a> {
                 let all = self.branches.iter().chain(&own);
                 let mut line = all.filter(|it| it.over == over && it.at.to_bits() == bits);
                 let value = orbit.parameters[self.parameters[over]];
-                let is_known = line.any(|it| {
-                    let known = self.crossings(it, value);
-                    known.is_ok_and(|known| known.iter().any(|it| is_same(it, &orbit)))
-                });
+                let is_known =
+                    line.any(|it| self.crossings(it, value).0.iter().any(|it| is_same(it, &orbit)));
                 if is_known {
                     continue;
                 }
@@ -121,9 +119,10 @@ impl<'a> Cover<'a> {
                 };
                 let branch = LineBranch { over, at, branch };
                 for value in &self.lines[over] {
-                    match self.crossings(&branch, *value) {
-                        Ok(all) => next.extend(all.into_iter().map(|it| (1 - over, it))),
-                        Err(_) => lost.push(self.place(&orbit)),
+                    let (all, complete) = self.crossings(&branch, *value);
+                    next.extend(all.into_iter().map(|it| (1 - over, it)));
+                    if complete.is_err() {
+                        lost.push(self.place(&orbit));
                     }
                 }
                 own.push(branch);
@@ -140,8 +139,9 @@ impl<'a> Cover<'a> {
         waiting
     }
 
-    /// The orbits of a branch at a value of its parameter, without verdicts.
-    fn crossings(&self, line: &LineBranch, value: f64) -> Result<Vec<Orbit>, OrbitError> {
+    /// The orbits of a branch at a value of its parameter, without verdicts, and whether these are
+    /// all.
+    fn crossings(&self, line: &LineBranch, value: f64) -> (Vec<Orbit>, Result<(), OrbitError>) {
         let place = self.parameters[line.over];
         let Branch { points, specials, closed, .. } = &line.branch;
         // Orbits in order, and whether the branch turns back there.
@@ -159,7 +159,7 @@ impl<'a> Cover<'a> {
             all.extend(points.first().map(|it| (it, false)));
         }
         let of = |(orbit, _): (&Orbit, bool)| orbit.parameters[place];
-        let mut found: Vec<Orbit> = Vec::new();
+        let (mut found, mut complete): (Vec<Orbit>, _) = (Vec::new(), Ok(()));
         for pair in all.windows(2) {
             let [low, high] = [of(pair[0]), of(pair[1])];
             if (low < value && high < value) || (low > value && high > value) || low == high {
@@ -175,12 +175,13 @@ impl<'a> Cover<'a> {
             let mut draft = mixed([pair[0].0, pair[1].0], part);
             draft.parameters[place] = value;
             draft.parameters[self.parameters[1 - line.over]] = line.at;
-            let orbit = self.at(&draft)?;
-            if !found.iter().any(|it| is_same(it, &orbit)) {
-                found.push(orbit);
+            match self.at(&draft) {
+                Ok(orbit) if found.iter().any(|it| is_same(it, &orbit)) => {}
+                Ok(orbit) => found.push(orbit),
+                Err(error) => complete = Err(error),
             }
         }
-        Ok(found)
+        (found, complete)
     }
 
     /// The orbit near a draft, without a verdict.
@@ -204,7 +205,9 @@ impl<'a> Cover<'a> {
             if !around.contains(&line.at) {
                 continue;
             }
-            for orbit in self.crossings(line, point[line.over])? {
+            let (all, complete) = self.crossings(line, point[line.over]);
+            complete?;
+            for orbit in all {
                 let own = self.travelled(&orbit, across, target)?;
                 found.extend(own.filter(|own| !found.iter().any(|it| is_same(it, own))));
             }

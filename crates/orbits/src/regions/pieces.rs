@@ -10,6 +10,7 @@ use super::{FollowedOrbits, OrbitBoundary, RegionOptions};
 use crate::branch::curve::SpecialCurve;
 use crate::branch::{SpecialKind, SpecialOrbit};
 use crate::error::OrbitError;
+use crate::orbit::Orbit;
 
 /// Two places so near, in parts of the longer side of the window, are one vertex.
 const ONE_VERTEX: f64 = 1e-6;
@@ -28,26 +29,31 @@ pub(super) struct Drawn {
 
 type Piece = Curve<FollowedOrbits, OrbitBoundary>;
 
+/// What is special: its kind, segment and rule.
+type What = (SpecialKind, Option<usize>, Option<usize>);
+
 /// The curves of all that is special on the lines of a cover and changes what is followed.
 pub(super) fn draw(
     cover: &Cover<'_>,
     window: &Window,
     options: &RegionOptions,
 ) -> Result<Drawn, OrbitError> {
+    let size = window.extent().max();
     let mut sheet = Sheet {
         cover,
-        size: window.extent().max(),
+        size,
         window: *window,
         pieces: Vec::new(),
         vertices: Vec::new(),
         unresolved: Vec::new(),
     };
     // A point between makes the error 16 times less.
-    let interpolation = options.tolerance * sheet.size;
+    let interpolation = options.tolerance * size;
     for point in &cover.lost {
         sheet.doubt(*point);
     }
-    let mut known: Vec<SpecialCurve> = Vec::new();
+    // Special orbits by what they are; curves of one kind may be the same.
+    let mut kinds: Vec<(What, Vec<&SpecialOrbit>)> = Vec::new();
     for line in &cover.branches {
         let branch = &line.branch;
         if branch.objection.is_some()
@@ -59,28 +65,37 @@ pub(super) fn draw(
             let beside = [special.behind.checked_sub(1), Some(special.behind)];
             let mut beside = beside.into_iter().flatten().filter_map(|k| branch.points.get(k));
             let inside = window.contains(&cover.place(&special.orbit));
-            let matters = inside && beside.any(|it| it.is_admissible());
-            if !matters || known.iter().any(|curve| passes(curve, special, cover, sheet.size)) {
+            if !inside || !beside.any(Orbit::is_admissible) {
                 continue;
             }
-            let (parameters, window) = (cover.parameters, cover.window);
-            let found = cover.orbits.curve_within(
-                special,
-                parameters,
-                window,
-                &options.branch,
-                Some(interpolation),
-            );
-            match found {
-                Ok(curve) => {
-                    sheet.add(&curve, special);
-                    known.push(curve);
-                }
-                Err(_) => sheet.doubt(cover.place(&special.orbit)),
+            let what = (special.kind, special.segment, special.rule);
+            match kinds.iter_mut().find(|(own, _)| *own == what) {
+                Some((_, all)) => all.push(special),
+                None => kinds.push((what, vec![special])),
             }
         }
     }
-    sheet.divide(options.tolerance * sheet.size)?;
+    let followed = kinds.par_iter().map(|(_, specials)| {
+        let mut known: Vec<(SpecialCurve, &SpecialOrbit)> = Vec::new();
+        let mut lost: Vec<Point> = Vec::new();
+        for &special in specials {
+            if known.iter().any(|(curve, _)| passes(curve, special, cover, size)) {
+                continue;
+            }
+            let (parameters, window) = (cover.parameters, cover.window);
+            let most = Some(interpolation);
+            match cover.orbits.curve_within(special, parameters, window, &options.branch, most) {
+                Ok(curve) => known.push((curve, special)),
+                Err(_) => lost.push(cover.place(&special.orbit)),
+            }
+        }
+        (known, lost)
+    });
+    for (known, lost) in followed.collect::<Vec<_>>() {
+        lost.into_iter().for_each(|point| sheet.doubt(point));
+        known.iter().for_each(|(curve, special)| sheet.add(curve, special));
+    }
+    sheet.divide(options.tolerance * size)?;
     sheet.label();
     sheet.tidy();
     let nodes = sheet.pieces.iter().map(|it| it.nodes.len()).sum();
@@ -92,9 +107,8 @@ pub(super) fn draw(
 fn passes(curve: &SpecialCurve, special: &SpecialOrbit, cover: &Cover<'_>, size: f64) -> bool {
     let point = cover.place(&special.orbit);
     let segments = &special.orbit.segments;
-    let same_rule = |orbit: &crate::orbit::Orbit| {
-        orbit.segments.len() == segments.len() && curve.kind == special.kind
-    };
+    let same_rule =
+        |orbit: &Orbit| orbit.segments.len() == segments.len() && curve.kind == special.kind;
     curve.points.windows(2).any(|pair| {
         let [from, to] = [0, 1].map(|k| cover.place(&pair[k]));
         let chord = to - from;
@@ -121,8 +135,14 @@ struct Sheet<'a> {
 impl Sheet<'_> {
     /// Something at a place is not explained.
     fn doubt(&mut self, point: Point) {
-        let labels = [FollowedOrbits::default(), FollowedOrbits::default()];
-        self.unresolved.push(Unresolved::Change { between: [point, point], labels });
+        let known = self.unresolved.iter().any(|it| match it {
+            Unresolved::Change { between, .. } => (between[0] - point).norm() <= 1e-6 * self.size,
+            _ => false,
+        });
+        if !known {
+            let labels = [FollowedOrbits::default(), FollowedOrbits::default()];
+            self.unresolved.push(Unresolved::Change { between: [point, point], labels });
+        }
     }
 
     /// The vertex at a place.
@@ -171,7 +191,7 @@ impl Sheet<'_> {
                 }
             }
         }
-        let node = |orbit: &crate::orbit::Orbit, tangent: [f64; 2]| Node {
+        let node = |orbit: &Orbit, tangent: [f64; 2]| Node {
             point: self.cover.place(orbit),
             tangent: tangent.into(),
         };

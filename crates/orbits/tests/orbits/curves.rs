@@ -135,7 +135,7 @@ fn planted(
     let options = BranchOptions::default();
     let branch = orbits.branch(&orbit, 0, range, &options).expect("a branch");
     let special = branch.specials.iter().find(|it| it.kind == kind);
-    let special = special.unwrap_or_else(|| panic!("{kind:?}: {:?}", branch.objection));
+    let special = special.unwrap_or_else(|| panic!("{kind:?}: {:?}", branch.specials));
     orbits.curve(special, [0, 1], window, &options).expect("a curve")
 }
 
@@ -151,7 +151,7 @@ fn two_grazes_at_once() {
 }
 
 /// Beside a relay, y' = m + n y − y³ folds where 27 m² = 4 n³.
-pub const CUSP: &str = "parameter m = 0, n = 1\nstate x = 0, y = 1\ny' = m + n*y - y^3\nmode up\n  \
+pub const CUSP: &str = "parameter m = 0.1, n = 1\nstate x = 0, y = 1\ny' = m + n*y - y^3\nmode up\n  \
     x' = 1 - x\n  when x > 0.5 \"up\" -> down\nmode down\n  x' = -1 - x\n  when x < -0.5 \"down\" \
     -> up\nstart in up\nend = 9";
 
