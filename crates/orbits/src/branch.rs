@@ -262,6 +262,10 @@ impl Orbits {
                 break;
             }
             let next = match along.step(&last, step) {
+                // On a change itself neither side is seen: a point before it is as good.
+                Ok(next) if next.orbit.is_undecided() && !last.orbit.is_undecided() => {
+                    along.step(&last, 0.9 * step).unwrap_or(next)
+                }
                 Ok(next) => next,
                 Err(_) if 0.5 * step >= options.shortest_step => {
                     step *= 0.5;

@@ -54,8 +54,13 @@ impl Along<'_> {
             if high - low <= narrow {
                 break;
             }
-            let middle = 0.5 * (low + high);
-            let point = self.ahead(from, middle)?;
+            let mut middle = 0.5 * (low + high);
+            let mut point = self.ahead(from, middle)?;
+            // A point on the change itself has neither side.
+            if round < COARSE && point.orbit.is_undecided() {
+                middle = 0.625 * low + 0.375 * high;
+                point = self.ahead(from, middle)?;
+            }
             if point.orbit.is_admissible() == begins {
                 (low, low_point) = (middle, point);
             } else {
