@@ -315,7 +315,7 @@ class FormulaSystem:
         >>> orbit = ball.orbit(itinerary=["period", "bounce"])
         >>> found = ball.orbit_regions(orbit, ("a", "r"), (0.01, 0.03), (0.65, 0.75), cells=2)
         >>> found.objection, found.at(0.011, 0.7), found.at(0.02, 0.7)
-        (None, (), (0, 1))
+        (None, (), (0,))
         """
         return _orbit_regions.regions(self, orbit, parameters, x, y, cells)
 

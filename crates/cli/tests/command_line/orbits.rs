@@ -106,13 +106,13 @@ fn regions_are_written() {
          --out regions.json --plot regions.svg",
     );
     assert_eq!(ran.code, 0, "{}", ran.stderr);
-    for said in ["none", "stable and unstable", "fold"] {
+    for said in ["none", "stable", "fold", "error of boundaries"] {
         assert!(ran.stdout.contains(said), "{said}: {}", ran.stdout);
     }
     let text = directory.read("regions.json");
     assert!(text.contains("stickslip.orbit-regions/1"));
     let picture = directory.read("regions.svg");
-    assert!(picture.contains("fold") && picture.contains("unstable"));
+    assert!(picture.contains("fold") && picture.contains("stable"));
     let refused = directory.run("regions ball.slip --itinerary period,bounce --x a=0:1 --y a=0:1");
     assert!(refused.code == 2 && refused.stderr.contains("two parameters"), "{}", refused.stderr);
 }

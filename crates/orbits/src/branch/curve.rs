@@ -299,7 +299,7 @@ impl Follower<'_> {
 }
 
 /// How far a point is from a cubic near its middle.
-fn distance(cubic: &Cubic, point: &Vector2<f64>) -> f64 {
+pub(crate) fn distance(cubic: &Cubic, point: &Vector2<f64>) -> f64 {
     let mut t = 0.5;
     for _ in 0..4 {
         let along = cubic.derivative(t);

@@ -7,7 +7,7 @@ use stickslip_tracer::{
 
 use super::cover::{Cover, are_near};
 use super::{FollowedOrbits, OrbitBoundary, RegionOptions};
-use crate::branch::curve::SpecialCurve;
+use crate::branch::curve::{SpecialCurve, distance};
 use crate::branch::{SpecialKind, SpecialOrbit};
 use crate::error::OrbitError;
 use crate::orbit::Orbit;
@@ -91,9 +91,18 @@ pub(super) fn draw(
         }
         (known, lost)
     });
+    let mut all: Vec<(SpecialCurve, &SpecialOrbit)> = Vec::new();
     for (known, lost) in followed.collect::<Vec<_>>() {
         lost.into_iter().for_each(|point| sheet.doubt(point));
-        known.iter().for_each(|(curve, special)| sheet.add(curve, special));
+        all.extend(known);
+    }
+    // Of curves that are one, as where a segment vanishes at each fold, the first kind is drawn.
+    all.sort_by_key(|(curve, _)| curve.kind);
+    let reach = 10.0 * interpolation;
+    for (place, (curve, special)) in all.iter().enumerate() {
+        if !all[..place].iter().any(|(other, _)| covers(cover, other, curve, reach)) {
+            sheet.add(curve, special);
+        }
     }
     sheet.divide(options.tolerance * size)?;
     sheet.label();
@@ -119,6 +128,23 @@ fn passes(curve: &SpecialCurve, special: &SpecialOrbit, cover: &Cover<'_>, size:
             && (-0.01..=1.01).contains(&t)
             && aside <= sagitta
             && are_near(&pair[usize::from(t > 0.5)], &special.orbit, 0.05)
+    })
+}
+
+/// The nodes of a curve.
+fn nodes(cover: &Cover<'_>, curve: &SpecialCurve) -> Vec<Node> {
+    let all = curve.points.iter().zip(&curve.tangents);
+    all.map(|(orbit, tangent)| Node { point: cover.place(orbit), tangent: (*tangent).into() })
+        .collect()
+}
+
+/// Whether a curve lies on another one, as near as this.
+fn covers(cover: &Cover<'_>, one: &SpecialCurve, other: &SpecialCurve, reach: f64) -> bool {
+    let own = nodes(cover, one);
+    other.points.iter().all(|orbit| {
+        let point = cover.place(orbit);
+        let mut cubics = own.windows(2).map(|pair| Cubic::between(&pair[0], &pair[1]));
+        cubics.any(|cubic| distance(&cubic, &point) <= reach)
     })
 }
 
@@ -234,7 +260,11 @@ impl Sheet<'_> {
         let whole = curve.closed && cuts.is_empty();
         for pair in bounds.windows(2) {
             let mut nodes: Vec<Node> = all[pair[0]..=pair[1]].iter().map(|it| it.0).collect();
+            nodes.dedup_by(|later, earlier| (later.point - earlier.point).norm() <= near);
             let count = nodes.len();
+            if count < 2 {
+                continue;
+            }
             // At a cusp the direction is that of the side from which it is reached.
             let chord = |one: &Node, other: &Node| (other.point - one.point).normalize();
             if all[pair[0]].2 {
@@ -249,6 +279,9 @@ impl Sheet<'_> {
                 nodes[count - 1].point = self.vertices[ends[1]].point;
                 ends
             });
+            if count == 2 && nodes[0].point == nodes[1].point {
+                continue;
+            }
             let sides = [FollowedOrbits::default(), FollowedOrbits::default()];
             self.pieces.push(Curve { margin: margin.clone(), sides, nodes, ends });
         }
