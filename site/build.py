@@ -59,7 +59,7 @@ REFERENCE = {
     "Systems of your own": ("_hybrid", "_systems", "_solutions", "_derivatives", "_compiled"),
     "Systems of formulas": ("_formulas", "_many", "_recorded", "_sympy"),
     "Families of systems": ("_families", "_family_stacks"),
-    "Periodic orbits": ("_orbits", "_attractors"),
+    "Periodic orbits": ("_orbits", "_orbit_regions", "_attractors"),
     "The explorer, and errors": ("_explorer", "_native"),
 }
 

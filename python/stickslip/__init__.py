@@ -19,6 +19,12 @@ if TYPE_CHECKING:
     from stickslip._laws import Keyword, NamedLaw, Restitution, laws, restitution
     from stickslip._native import ComputationError
     from stickslip._attractors import Attractor, Basins, Diagram, Exponents
+    from stickslip._orbit_regions import (
+        OrbitBoundary,
+        OrbitRegion,
+        OrbitRegions,
+        read_orbit_regions,
+    )
     from stickslip._orbits import Branch, Orbit, OrbitSegment, SpecialCurve, SpecialOrbit
     from stickslip._solutions import DenseOutput, Solution
     from stickslip._systems import Guard, HybridSystem, Mode
@@ -143,6 +149,9 @@ __all__ = [
     "Motion",
     "NamedLaw",
     "Orbit",
+    "OrbitBoundary",
+    "OrbitRegion",
+    "OrbitRegions",
     "OrbitSegment",
     "Region",
     "Restitution",
@@ -186,6 +195,7 @@ __all__ = [
     "map",
     "psi_of_ratio",
     "read",
+    "read_orbit_regions",
     "recorded",
     "reproduce",
     "reproduction_parts",
@@ -212,6 +222,7 @@ _MODULES = {
     "_laws": "Keyword NamedLaw Restitution laws restitution",
     "_native": "ComputationError",
     "_attractors": "Attractor Basins Diagram Exponents",
+    "_orbit_regions": "OrbitBoundary OrbitRegion OrbitRegions read_orbit_regions",
     "_orbits": "Branch Orbit OrbitSegment SpecialCurve SpecialOrbit",
     "_solutions": "DenseOutput Solution",
     "_systems": "Guard HybridSystem Mode",

@@ -15,10 +15,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _attractors, _native, _orbits
+from stickslip import _attractors, _native, _orbit_regions, _orbits
 from stickslip._attractors import Basins, Diagram, Exponents
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
+from stickslip._orbit_regions import OrbitRegions
 from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
@@ -273,12 +274,50 @@ class FormulaSystem:
     ) -> SpecialCurve:
         """The curve of a special orbit of a branch over two parameters, in the window of the
         intervals x and y, in both directions. `meetings` are orbits at which something else changes
-        too: on a curve of neimark-sacker, fold is the resonance 1:1 and flip 1:2.
+        too, with their names: resonance-1-1, resonance-1-2, double-graze, cusp, fold-grazing.
 
         Raises ValueError if a name or a value is wrong, or for the kinds branch-point and boundary,
         and ComputationError if the curve does not begin.
         """
         return _orbits.curve(self, special, parameters, x, y, longest_step)
+
+    def orbit_regions(
+        self,
+        orbit: Orbit,
+        parameters: tuple[str, str],
+        x: tuple[float, float],
+        y: tuple[float, float],
+        *,
+        cells: int = 5,
+    ) -> OrbitRegions:
+        """Where orbits of the itinerary of an orbit exist and are stable over two parameters, in
+        the window of the intervals x and y. Each region says which orbits the system follows there,
+        each boundary what changes. Lines on which orbits are followed divide each side of the
+        window into so many cells.
+
+        Raises ValueError if a name or a value is wrong, ComputationError if the orbit cannot be
+        followed. What is not explained is in doubt, and `objection` says what.
+
+        >>> import stickslip
+        >>> ball = stickslip.system(\"\"\"
+        ... parameter a = 0.02, r = 0.7
+        ... state x = 0.015, v = 0.5, phase = 0.8
+        ... table = a*sin(phase)
+        ... x' = v
+        ... v' = -1
+        ... phase' = 2*pi
+        ... when x < table "bounce"
+        ...   x := table
+        ...   v := (1 + r)*table' - r*v
+        ... when phase > 2*pi "period"
+        ...   phase := phase - 2*pi
+        ... \"\"\")
+        >>> orbit = ball.orbit(itinerary=["period", "bounce"])
+        >>> found = ball.orbit_regions(orbit, ("a", "r"), (0.01, 0.03), (0.65, 0.75), cells=2)
+        >>> found.objection, found.at(0.011, 0.7), found.at(0.02, 0.7)
+        (None, (), (0,))
+        """
+        return _orbit_regions.regions(self, orbit, parameters, x, y, cells)
 
     def switched(self, branch: Branch, special: SpecialOrbit, *, aside: float = 0.05) -> Orbit:
         """The orbit on the branch that begins or passes at a special orbit of a branch: of twice

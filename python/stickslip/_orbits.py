@@ -82,7 +82,8 @@ class SpecialOrbit(Shown):
 @dataclass(frozen=True, repr=False, eq=False)
 class SpecialCurve(Shown):
     """Special orbits of one kind over two parameters, in the order of the curve. `meetings` are
-    orbits at which something else changes too, as kind and orbit.
+    orbits at which something else changes too, as name and orbit: `resonance-1-1`,
+    `resonance-1-2`, `double-graze`, `cusp`, or both kinds, as `fold-grazing`.
     """
 
     kind: str
@@ -263,7 +264,7 @@ def curve(
         kind=found["kind"],
         parameters=(parameters[0], parameters[1]),
         points=[_read(system, it) for it in found["points"]],
-        meetings=[(it["kind"], _read(system, it["orbit"])) for it in found["meetings"]],
+        meetings=[(it["name"], _read(system, it["orbit"])) for it in found["meetings"]],
         closed=found["closed"],
         objection=found["objection"],
     )

@@ -184,6 +184,11 @@ MADE: dict[str, Callable[[], Any]] = {
     "Branch": _branch,
     "Orbit": lambda: relay().orbit(itinerary=["down", "up"]),
     "OrbitSegment": lambda: of("Orbit").segments[0],
+    "OrbitRegions": lambda: table().orbit_regions(
+        table().orbit(itinerary=["period", "bounce"]), ("a", "r"), (0.01, 0.03), (0.65, 0.75), cells=1
+    ),
+    "OrbitRegion": lambda: of("OrbitRegions").regions[0],
+    "OrbitBoundary": lambda: of("OrbitRegions").boundaries[0],
     "SpecialCurve": lambda: table().curve(
         of("SpecialOrbit"), ("r", "a"), (0.68, 0.72), (0.01, 0.06)
     ),

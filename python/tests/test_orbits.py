@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -72,6 +73,32 @@ def test_a_branch_has_its_special_orbits() -> None:
         branch.svg("y")
     with pytest.raises(ValueError, match="expected a `flip` or a `branch-point`"):
         ball.switched(branch, special["fold"])
+
+
+def test_regions_say_where_an_orbit_is_stable(tmp_path: Path) -> None:
+    ball = stickslip.system(BALL)
+    orbit = ball.orbit(itinerary=["period", "bounce"])
+    window = ((0.01, 0.04), (0.65, 0.75))
+    found = ball.orbit_regions(orbit, ("a", "r"), *window, cells=2)
+    assert found.objection is None and found.parameters == ("a", "r")
+    assert {it.kind for it in found.boundaries} == {"fold", "flip"}
+    assert {it.orbits for it in found.regions} == {(), (0,), (1,)}
+    assert [it.stable for it in found.regions if it.orbits == (0,)] == [True]
+    path = tmp_path / "regions.json"
+    found.save(path)
+    read = stickslip.read_orbit_regions(path)
+    assert read.document()["schema"] == "stickslip.orbit-regions/1"
+    random, w = np.random.default_rng(54), 2 * math.pi
+    for a, r in zip(random.uniform(*window[0], 200), random.uniform(*window[1], 200), strict=True):
+        fold = (1 - r) / (2 * (1 + r)) / w
+        flip = math.hypot(fold, 2 * (1 + r**2) / (1 + r) ** 2 / w**2)
+        expected = () if a < fold else (0,) if a < flip else (1,)
+        assert found.at(a, r) == read.at(a, r) == expected, (a, r)
+    assert found.svg().startswith("<svg") and found.at(1.0, 0.7) is None
+    with pytest.raises(ValueError, match="the places of two parameters"):
+        ball.orbit_regions(orbit, ("a", "a"), *window)
+    with pytest.raises(ValueError, match="cells = 0"):
+        ball.orbit_regions(orbit, ("a", "r"), *window, cells=0)
 
 
 def test_a_tent_map_is_chaotic() -> None:

@@ -18,6 +18,7 @@ mod locate;
 mod man;
 mod map;
 mod orbit;
+mod regions;
 mod reproduce;
 mod run;
 mod section;
@@ -55,6 +56,7 @@ pub enum Command {
     Orbit(orbit::OrbitArguments),
     Branch(branch::BranchArguments),
     Curve(curve::CurveArguments),
+    Regions(regions::RegionsArguments),
     Section(section::SectionArguments),
     Basins(basins::BasinsArguments),
     Trace(trace::TraceArguments),
@@ -85,6 +87,7 @@ impl Command {
             Self::Orbit(arguments) => orbit::run(arguments),
             Self::Branch(arguments) => branch::run(arguments),
             Self::Curve(arguments) => curve::run(arguments),
+            Self::Regions(arguments) => regions::run(arguments),
             Self::Section(arguments) => section::run(arguments),
             Self::Basins(arguments) => basins::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),

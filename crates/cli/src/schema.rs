@@ -15,7 +15,7 @@ pub const REPORT: &str = "stickslip.report/1";
 pub const RUN: &str = "stickslip.run/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 17] = [
+pub const ALL: [&str; 18] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
@@ -33,4 +33,5 @@ pub const ALL: [&str; 17] = [
     orbits::ORBIT,
     orbits::BRANCH,
     orbits::CURVE,
+    orbits::REGIONS,
 ];

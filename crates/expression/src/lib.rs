@@ -37,12 +37,12 @@
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `sliding` lets it slide along
-//! surfaces, `zeros` finds where guards start from zero, `branches` makes events of where equations
-//! jump, `compiled` makes it ready for parameters, `resets` is what a rule makes of the state,
-//! `continuation` decides how it leaves surfaces, `run` is what the solver sees of it, `recording`
-//! a run with its events, `explained` says why one failed, `sensitivity` its derivatives, `family`
-//! the runs of a plane of parameters, and `text` reads and writes it. `docs/systems.md` in the
-//! repository describes the language.
+//! surfaces, `native` makes it of a system of Rust, `zeros` finds where guards start from zero,
+//! `branches` makes events of where equations jump, `compiled` makes it ready for parameters,
+//! `resets` is what a rule makes of the state, `continuation` decides how it leaves surfaces, `run`
+//! is what the solver sees of it, `recording` a run with its events, `explained` says why one
+//! failed, `sensitivity` its derivatives, `family` the runs of a plane of parameters, and `text`
+//! reads and writes it. `docs/systems.md` in the repository describes the language.
 
 mod branches;
 mod compiled;
@@ -50,6 +50,7 @@ mod continuation;
 mod explained;
 mod family;
 mod graph;
+mod native;
 mod program;
 mod recording;
 mod resets;
@@ -63,6 +64,7 @@ mod zeros;
 pub use compiled::Compiled;
 pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
+pub use native::{Jump, NativeSystem, ValuedSystem};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, outcome_name};
 pub use run::Runnable;

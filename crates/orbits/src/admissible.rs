@@ -3,21 +3,25 @@
 //! Runs of the system, whose events are decided by bounds, go from the middle of a segment to the
 //! middle of the next one, until they have covered the orbit. So each starts from an accurate
 //! state, away from zeros of conditions, however unstable the orbit is. The rules that act must be
-//! those of the itinerary, at their times, and lead to its modes.
+//! those of the itinerary, at their times, and lead to its modes. Beside a graze a condition is
+//! zero twice within the error of these times: an orbit is followed up to the first zero, where the
+//! condition has the rate with which its rule acts.
 
 use stickslip_expression::{
     Compiled, InvalidValue, Next, Recording, Rule, Runnable, System, Trigger,
 };
 use stickslip_solver::dynamic::{DynamicSwitch, ReadableDynamic};
-use stickslip_solver::{EmbeddedPair, Options, Outcome};
+use stickslip_solver::{Direction, EmbeddedPair, Options, Outcome};
 
 use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
 use crate::itinerary::Leg;
-use crate::orbit::{Obstacle, Verdict};
+use crate::orbit::{Obstacle, Orbit, Verdict};
 
 /// How far an event may be from its place, of the period.
 const AWAY: f64 = 1e-6;
+/// A rate below this part of what it is made of may be 0.
+const HIDDEN: f64 = 1e-10;
 /// Segments shorter than this part of the period are passed by the run of a longer one.
 const SHORT: f64 = 1e-5;
 
@@ -75,12 +79,33 @@ impl Halfway {
 pub(crate) fn verdict(
     halfway @ Halfway { system, modes, .. }: &Halfway,
     equations: &Equations,
-    draft: &Draft,
+    orbit: &Orbit,
     options: &Options,
 ) -> Result<Verdict, OrbitError> {
+    let draft = &orbit.draft();
     let period = draft.period();
     if let Some(segment) = draft.durations.iter().position(|it| *it < 0.0) {
         return Ok(Verdict::Virtual(Obstacle::Backwards { segment }));
+    }
+    let mut touches = None;
+    for (segment, leg) in draft.legs.iter().enumerate() {
+        let Trigger::When(_, direction) = leg.rule(system).trigger else { continue };
+        let s = orbit.time(segment + 1);
+        let event = equations.end(segment, &draft.parameters, (s, &orbit.segments[segment].end));
+        let rate = if direction == Direction::Rising { -event.rate() } else { event.rate() };
+        let rate = if direction == Direction::Either { -rate.abs() } else { rate };
+        let rule = leg.rule;
+        if rate > HIDDEN * event.rate_size() {
+            return Ok(Verdict::Virtual(Obstacle::Acts { segment, rule, s }));
+        }
+        if event.grazes() {
+            let name = leg.name(system);
+            touches =
+                Some(format!("the condition of rule `{name}` only touches zero at t = {s:?}"));
+            if rate >= -HIDDEN * event.rate_size() {
+                return Ok(Verdict::Undecided(touches.unwrap_or_default()));
+            }
+        }
     }
     let (m, starts) = (draft.legs.len(), draft.starts());
     let long: Vec<usize> = (0..m).filter(|&i| draft.durations[i] > SHORT * period).collect();
@@ -111,8 +136,13 @@ pub(crate) fn verdict(
                 return Ok(acts.unwrap_or_else(undecided));
             }
         };
-        if let Some(obstacle) = obstacle(&found.events) {
-            return Ok(obstacle);
+        match (obstacle(&found.events), &touches) {
+            // Rounding hides that the condition becomes negative.
+            (Some(Verdict::Virtual(Obstacle::Idle { .. })), Some(touches)) => {
+                return Ok(Verdict::Undecided(touches.clone()));
+            }
+            (Some(obstacle), _) => return Ok(obstacle),
+            (None, _) => {}
         }
         undecided = undecided.or_else(|| doubt(system, &found));
     }

@@ -8,11 +8,11 @@
 //! orbits over two parameters, and `switched` goes over to another branch.
 
 mod borders;
-mod change;
+pub(crate) mod change;
 pub(crate) mod curve;
 mod locate;
 mod meet;
-mod point;
+pub(crate) mod point;
 mod switched;
 mod test;
 
@@ -22,6 +22,7 @@ use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
+use change::Watches;
 use point::{Along, Point};
 
 /// How a branch is followed. Lengths are in unknowns of size 1: states over their largest value,
@@ -102,7 +103,7 @@ pub struct SpecialOrbit<O = Orbit, R = Option<usize>> {
 }
 
 /// What changes at a special orbit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum SpecialKind {
@@ -112,6 +113,8 @@ pub enum SpecialKind {
     Flip,
     /// Two complex multipliers have the size 1.
     NeimarkSacker,
+    /// Two curves of folds meet and turn back: only on a curve.
+    Cusp,
     /// Two branches meet.
     BranchPoint,
     /// A condition touches zero.
@@ -140,6 +143,7 @@ impl SpecialKind {
             Self::Fold => "fold",
             Self::Flip => "flip",
             Self::NeimarkSacker => "neimark-sacker",
+            Self::Cusp => "cusp",
             Self::BranchPoint => "branch-point",
             Self::Grazing => "grazing",
             Self::GrazingSliding => "grazing-sliding",
@@ -155,24 +159,24 @@ impl SpecialKind {
 
 /// One end of a branch or a curve, or both together. What is special has the number of points
 /// before it.
-struct Half<S> {
-    points: Vec<Orbit>,
+struct Half<S, P = Orbit> {
+    points: Vec<P>,
     specials: Vec<S>,
     closed: bool,
     objection: Option<String>,
 }
 
-impl<S> Default for Half<S> {
+impl<S, P> Default for Half<S, P> {
     fn default() -> Self {
         Self { points: Vec::new(), specials: Vec::new(), closed: false, objection: None }
     }
 }
 
-impl<S> Half<S> {
+impl<S, P> Half<S, P> {
     /// Both ends together, with the point between them.
     fn joined(
         mut self,
-        start: Orbit,
+        start: P,
         back: Option<Self>,
         behind: impl Fn(&mut S) -> &mut usize,
     ) -> Self {
@@ -218,13 +222,21 @@ impl Orbits {
         let draft = orbit.draft();
         let active = [(parameter, high - low)];
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
-        let along = Along { orbits: self, equations: &equations, parameter, range: [low, high] };
+        let (range, judged) = ([low, high], true);
+        let along = Along {
+            orbits: self,
+            equations: &equations,
+            parameter,
+            range,
+            judged,
+            watches: Watches::default(),
+        };
         let start = along.first(&draft)?;
         let ahead = self.half(&along, &start, options);
         let back = (!ahead.closed).then(|| self.half(&along, &start.turned(), options));
         let Half { points, specials, closed, objection } =
             ahead.joined(start.orbit, back, |special| &mut special.behind);
-        Ok(Branch { parameter, range: [low, high], points, specials, closed, objection })
+        Ok(Branch { parameter, range, points, specials, closed, objection })
     }
 
     /// The value of the parameter at a point, in words.
@@ -250,6 +262,10 @@ impl Orbits {
                 break;
             }
             let next = match along.step(&last, step) {
+                // On a change itself neither side is seen: a point before it is as good.
+                Ok(next) if next.orbit.is_undecided() && !last.orbit.is_undecided() => {
+                    along.step(&last, 0.9 * step).unwrap_or(next)
+                }
                 Ok(next) => next,
                 Err(_) if 0.5 * step >= options.shortest_step => {
                     step *= 0.5;

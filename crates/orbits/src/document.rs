@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use stickslip_expression::{InvalidValue, System};
+use stickslip_tracer::DocumentError;
 
 use crate::branch::curve::{Meeting, SpecialCurve};
 use crate::branch::{Branch, SpecialOrbit};
@@ -11,6 +12,7 @@ use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::itinerary::Leg;
 use crate::orbit::{Obstacle, Orbit, Segment, Verdict};
+use crate::regions::{FollowedOrbits, OrbitAtlas, OrbitBoundary, OrbitNames, RegionOptions};
 
 /// The name of the layout of an orbit, with its version.
 pub const ORBIT: &str = "stickslip.orbit/1";
@@ -18,6 +20,9 @@ pub const ORBIT: &str = "stickslip.orbit/1";
 pub const BRANCH: &str = "stickslip.orbit-branch/1";
 /// The name of the layout of a curve of special orbits, with its version.
 pub const CURVE: &str = "stickslip.orbit-curve/1";
+
+/// The name of the layout of regions of an orbit, with its version.
+pub const REGIONS: &str = "stickslip.orbit-regions/1";
 
 /// An orbit with names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,7 +79,7 @@ pub type CurveRecord = SpecialCurve<String, OrbitRecord>;
 /// A document of an orbit, a branch or a curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Document<T> {
-    /// The name of the layout: [`ORBIT`], [`BRANCH`] or [`CURVE`].
+    /// The name of the layout: [`ORBIT`], [`BRANCH`], [`CURVE`] or [`REGIONS`].
     pub schema: String,
     /// The name of the system.
     pub system: String,
@@ -90,6 +95,15 @@ pub struct Document<T> {
 pub struct OneOrbit {
     /// The orbit.
     pub orbit: OrbitRecord,
+}
+
+/// What a document of regions of an orbit holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OrbitRegions {
+    /// The orbit from which they were found.
+    pub orbit: OrbitRecord,
+    /// The regions, in the layout of every atlas.
+    pub atlas: stickslip_tracer::Document<FollowedOrbits, OrbitBoundary>,
 }
 
 impl Verdict {
@@ -240,20 +254,55 @@ impl Document<CurveRecord> {
     #[must_use]
     pub fn of_curve(orbits: &Orbits, name: &str, curve: &SpecialCurve) -> Self {
         let system = orbits.system();
-        let meeting = |&Meeting { kind, segment, behind, ref orbit }: &Meeting| {
-            let orbit = OrbitRecord::new(system, orbit);
-            Meeting { kind, segment, behind, orbit }
+        let meeting = |it: &Meeting| {
+            let Meeting { kind, segment, behind, tangent, .. } = *it;
+            let (name, orbit) = (it.name.clone(), OrbitRecord::new(system, &it.orbit));
+            Meeting { name, kind, segment, behind, tangent, orbit }
         };
         let curve = SpecialCurve {
             kind: curve.kind,
             parameters: curve.parameters.map(|place| system.parameters[place].name.clone()),
             window: curve.window,
             points: curve.points.iter().map(|it| OrbitRecord::new(system, it)).collect(),
+            tangents: curve.tangents.clone(),
             meetings: curve.meetings.iter().map(meeting).collect(),
             closed: curve.closed,
             objection: curve.objection.clone(),
         };
         Self::new(orbits, CURVE, name, curve)
+    }
+}
+
+impl Document<OrbitRegions> {
+    /// The document of the regions of an orbit, which were found with `options`. `name` is that of
+    /// the system.
+    #[must_use]
+    pub fn of_regions(
+        orbits: &Orbits,
+        name: &str,
+        (orbit, parameters): (&Orbit, [usize; 2]),
+        atlas: &OrbitAtlas,
+        options: &RegionOptions,
+    ) -> Self {
+        let system = orbits.system();
+        let axes = parameters.map(|place| &*system.parameters[place].name);
+        let options = options.of_atlas(atlas.plane.window());
+        let atlas = stickslip_tracer::Document::new(atlas, &options, name, axes);
+        let orbit = OrbitRecord::new(system, orbit);
+        Self::new(orbits, REGIONS, name, OrbitRegions { orbit, atlas })
+    }
+
+    /// The regions, and their names. They are made of the curves again.
+    ///
+    /// # Errors
+    /// The document is not of regions, or contradicts itself.
+    pub fn read(self) -> Result<(OrbitAtlas, OrbitNames), DocumentError> {
+        if self.schema != REGIONS {
+            return Err(DocumentError::Schema { found: self.schema });
+        }
+        let document = self.content.atlas;
+        let names = OrbitNames { axes: document.axes.clone() };
+        Ok((document.atlas()?, names))
     }
 }
 

@@ -79,6 +79,12 @@ pub enum OrbitError {
         /// The length of the last update, of the size of the unknowns.
         update: f64,
     },
+    /// What a system follows at a point is not decided.
+    #[error("not decided: {0}")]
+    Undecided(String),
+    /// Curves make no regions.
+    #[error("no regions: {0}")]
+    Regions(String),
     /// The search leads to a point and no orbit.
     #[error(
         "the guess leads to an orbit of length {period:e}, which is a point; expected a length \

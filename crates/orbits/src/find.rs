@@ -252,7 +252,7 @@ impl Orbits {
 
     /// The same orbit with its verdict.
     pub(crate) fn judged(&self, equations: &Equations, orbit: &Orbit) -> Result<Orbit, OrbitError> {
-        let verdict = verdict(&self.halfway, equations, &orbit.draft(), &self.options)?;
+        let verdict = verdict(&self.halfway, equations, orbit, &self.options)?;
         Ok(Orbit { verdict, ..orbit.clone() })
     }
 

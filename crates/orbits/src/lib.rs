@@ -1,10 +1,11 @@
 //! Periodic orbits of piecewise-smooth ODEs, their stability, and where they change.
 //!
-//! [`Orbits`] has the orbits of a [`System`](stickslip_expression::System), which may be a text or
-//! functions of Python. An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
+//! [`Orbits`] has the orbits of a [`System`](stickslip_expression::System): a text, functions of
+//! Python, or a [system of Rust](stickslip_expression::NativeSystem). An [`Orbit`] is found from a [`Guess`], from a run that settles, or from an
 //! orbit at other parameters. [`Orbits::branch`] follows it over a parameter and locates the
 //! [special orbits](SpecialOrbit) on the way; [`Orbits::curve`] follows one of these over two
 //! parameters, and [`Orbits::switched`] goes over to another branch at a flip or a branch point.
+//! [`Orbits::regions`] has where over two parameters the orbit exists and is stable, as an atlas.
 //! What runs lead to, orbit or not, is shown by [`Orbits::section`] and [`Orbits::diagram`] as
 //! points, by [`Orbits::exponents`] as Lyapunov exponents, and by [`Orbits::basins`] over initial
 //! values.
@@ -29,13 +30,59 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A system of Rust has the same functions, once for all numbers:
+//!
+//! ```
+//! use stickslip_expression::{Jump, NativeSystem, System};
+//! use stickslip_orbits::{Guess, Orbits};
+//! use stickslip_solver::{Direction, Guard, Number};
+//!
+//! /// A neuron that is driven, and forgets its potential when it fires.
+//! struct Neuron;
+//!
+//! impl NativeSystem<1, 1, 1> for Neuron {
+//!     type Mode = ();
+//!
+//!     fn parameters(&self) -> [(&str, f64); 1] {
+//!         [("drive", 1.5)]
+//!     }
+//!     fn components(&self) -> [(&str, f64); 1] {
+//!         [("v", 0.0)]
+//!     }
+//!     fn modes(&self) -> &[()] {
+//!         &[()]
+//!     }
+//!     fn field<T: Number>(&self, (): (), drive: &[T; 1], _time: T, v: &[T; 1]) -> [T; 1] {
+//!         [drive[0] - v[0]]
+//!     }
+//!     fn guards(&self, (): ()) -> [(&str, Guard); 1] {
+//!         [("fires", Guard::new(Direction::Below))]
+//!     }
+//!     fn guard_values<T: Number>(&self, (): (), _: &[T; 1], _time: T, v: &[T; 1]) -> [T; 1] {
+//!         [-v[0] + 1.0]
+//!     }
+//!     fn transition<T: Number>(
+//!         &self, (): (), _: usize, _: &[T; 1], _time: T, _: &[T; 1],
+//!     ) -> Jump<(), T, 1> {
+//!         Jump::to((), [T::from(0.0)])
+//!     }
+//! }
+//!
+//! let orbits = Orbits::new(&System::of_native(&Neuron)?)?;
+//! let guess = Guess { itinerary: &["fires"], ..Guess::default() };
+//! let orbit = orbits.find(&[2.0], &guess)?;
+//! assert!((orbit.period - 2.0_f64.ln()).abs() < 1e-13 && orbit.is_admissible());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Accuracy
 //!
 //! Flows are computed with a tolerance of 1e-13. Beside closed forms, states and special values of
 //! parameters are right to 1e-11 of their size, and multipliers to 1e-11 of the largest one (the
 //! tests have the figures). A verdict is decided: along the whole orbit, no condition of another
-//! rule becomes negative. Where rounding hides whether one does, the verdict says so. On a branch
-//! each *point* is decided; what happens between two neighbours, and back again, is not seen.
+//! rule becomes negative, and that of its own rule does so at its end and not before. Where
+//! rounding hides whether one does, the verdict says so. On a branch each *point* is decided; what
+//! happens between two neighbours, and back again, is not seen.
 //!
 //! # What is refused
 //!
@@ -47,8 +94,8 @@
 //! The modules in reading order: `itinerary`, `orbit` and `error` are what is spoken of;
 //! `equations` has the equations of an orbit with a prescribed itinerary; `newton` solves them by
 //! the tracer's one search for points; `multipliers` and `admissible` judge what was found; `find`
-//! and `settle` have the ways to an orbit, `branch` follows it, `attractors` looks at runs that
-//! need not settle, and `document` writes orbits.
+//! and `settle` have the ways to an orbit, `branch` follows it, `regions` makes an atlas of it,
+//! `attractors` looks at runs that need not settle, and `document` writes orbits.
 
 mod admissible;
 mod attractors;
@@ -62,6 +109,7 @@ mod itinerary;
 mod multipliers;
 mod newton;
 mod orbit;
+mod regions;
 mod settle;
 
 pub use attractors::{Attractor, Basins, Column, Exponents, Section, SectionPoint};
@@ -71,6 +119,7 @@ pub use error::OrbitError;
 pub use find::{Guess, Orbits};
 pub use itinerary::Leg;
 pub use orbit::{Obstacle, Orbit, Segment, Verdict};
+pub use regions::{FollowedOrbits, OrbitAtlas, OrbitBoundary, OrbitNames, RegionOptions};
 pub use stickslip_expression::InvalidValue;
 
 #[doc = include_str!("../README.md")]

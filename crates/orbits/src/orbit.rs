@@ -98,6 +98,11 @@ impl Orbit {
         self.verdict == Verdict::Admissible
     }
 
+    /// Whether rounding hides if the system follows the orbit.
+    pub(crate) fn is_undecided(&self) -> bool {
+        matches!(self.verdict, Verdict::Undecided(_))
+    }
+
     /// The time at the start of a segment, or at the end behind the last one.
     pub(crate) fn time(&self, segment: usize) -> f64 {
         self.start + self.segments[..segment].iter().map(|it| it.duration).sum::<f64>()

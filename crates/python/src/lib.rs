@@ -66,7 +66,7 @@ mod _native {
     #[pymodule_export]
     use super::many::run_many;
     #[pymodule_export]
-    use super::orbits::{OrbitSystem, branch_picture};
+    use super::orbits::{OrbitMap, OrbitSystem, branch_picture};
     #[pymodule_export]
     use super::planes::{Atlas, atlas_options, gaining_lines};
     #[pymodule_export]

@@ -3,11 +3,13 @@
 use pyo3::prelude::*;
 use serde_json::json;
 use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
-use stickslip_orbits::document::{Document, OrbitRecord, SpecialRecord};
+use stickslip_figure::pictures::family::draw_named;
+use stickslip_orbits::document::{Document, OrbitRecord, OrbitRegions, SpecialRecord};
 use stickslip_orbits::{
-    Attractor, BranchOptions, Column, Guess, Orbit, OrbitError, Orbits, Section, SectionPoint,
-    SpecialOrbit,
+    Attractor, BranchOptions, Column, Guess, Orbit, OrbitAtlas, OrbitBoundary, OrbitError,
+    OrbitNames, Orbits, RegionOptions, Section, SectionPoint, SpecialOrbit,
 };
+use stickslip_tracer::Point;
 
 use crate::failure::{bad_input, failed};
 use crate::formulas::FormulaSystem;
@@ -107,6 +109,23 @@ impl OrbitSystem {
         let found = py.detach(|| self.0.curve(&special, parameters, window, &options));
         let document = Document::of_curve(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
+    }
+
+    /// The regions of an orbit over two parameters.
+    fn regions(
+        &self,
+        py: Python<'_>,
+        orbit: &str,
+        parameters: [usize; 2],
+        window: [[f64; 2]; 2],
+        cells: usize,
+    ) -> PyResult<OrbitMap> {
+        let orbit = self.read(orbit)?;
+        let options = RegionOptions { cells, ..RegionOptions::default() };
+        let found = py.detach(|| self.0.regions(&orbit, parameters, window, &options));
+        let atlas = found.map_err(exception)?;
+        let document = Document::of_regions(&self.0, "", (&orbit, parameters), &atlas, &options);
+        OrbitMap::new(document)
     }
 
     /// Times and states where a run meets a rule.
@@ -209,6 +228,99 @@ impl OrbitSystem {
     fn written(&self, found: Result<Orbit, OrbitError>) -> PyResult<String> {
         let document = Document::of_orbit(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
+    }
+}
+
+/// The regions of an orbit.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct OrbitMap {
+    atlas: OrbitAtlas,
+    names: OrbitNames,
+    text: String,
+}
+
+impl OrbitMap {
+    fn new(document: Document<OrbitRegions>) -> PyResult<Self> {
+        let text = serde_json::to_string(&document).map_err(failed)?;
+        let (atlas, names) = document.read().map_err(bad_input)?;
+        Ok(Self { atlas, names, text })
+    }
+
+    /// The label of a region that is not in doubt.
+    fn label(&self, region: usize) -> Option<Vec<usize>> {
+        let sure =
+            (!self.atlas.is_doubtful(region)).then(|| self.atlas.plane.regions().get(region));
+        Some(sure??.label.as_ref()?.0.clone())
+    }
+}
+
+/// The kind of a boundary, its segment and rule, the labels on both sides, and its points.
+type BoundaryLine = (&'static str, Option<usize>, Option<String>, [Vec<usize>; 2], Vec<(f64, f64)>);
+
+#[pymethods]
+impl OrbitMap {
+    /// The regions of a document.
+    #[staticmethod]
+    fn read(text: &str) -> PyResult<Self> {
+        Self::new(serde_json::from_str(text).map_err(bad_input)?)
+    }
+
+    /// The orbits at a point, unless it is on a boundary, outside the window, or in doubt.
+    fn at(&self, x: f64, y: f64) -> Option<Vec<usize>> {
+        self.atlas.label(&Point::new(x, y)).map(|label| label.0.clone())
+    }
+
+    /// For each region its orbits, its area, a point of it, and the places of its boundaries.
+    #[expect(clippy::type_complexity, reason = "rows of Python")]
+    fn regions(&self) -> Vec<(Option<Vec<usize>>, f64, (f64, f64), Vec<usize>)> {
+        let all = self.atlas.plane.regions().iter().enumerate();
+        let row = all.map(|(place, it)| {
+            let mut boundary: Vec<usize> = it.boundary.iter().map(|(curve, _)| *curve).collect();
+            boundary.sort_unstable();
+            boundary.dedup();
+            (self.label(place), it.area, (it.sample.x, it.sample.y), boundary)
+        });
+        row.collect()
+    }
+
+    fn boundaries(&self) -> Vec<BoundaryLine> {
+        let extent = self.atlas.plane.window().extent();
+        let all = self.atlas.plane.curves().iter();
+        let row = all.map(|it| {
+            let OrbitBoundary { kind, segment, rule } = &it.margin;
+            let sides = it.sides.each_ref().map(|label| label.0.clone());
+            let points = it.polyline(&extent).into_iter().map(|point| (point.x, point.y));
+            (kind.name(), *segment, rule.clone(), sides, points.collect())
+        });
+        row.collect()
+    }
+
+    /// The names of the parameters.
+    #[getter]
+    fn axes(&self) -> [String; 2] {
+        self.names.axes.clone()
+    }
+
+    /// The error of boundaries.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.atlas.plane.tolerance()
+    }
+
+    /// What speaks against the regions.
+    #[getter]
+    fn objection(&self) -> Option<String> {
+        self.atlas.doubts(&self.names).map(|doubts| doubts.objection())
+    }
+
+    /// The document as JSON.
+    #[getter]
+    fn text(&self) -> String {
+        self.text.clone()
+    }
+
+    fn svg(&self, title: &str) -> String {
+        draw_named(&self.atlas, &self.names, title).document()
     }
 }
 

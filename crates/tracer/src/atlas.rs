@@ -96,6 +96,20 @@ pub struct Atlas<Label, Margin> {
 pub type AtlasOf<F> = Atlas<<F as Family>::Label, <F as Family>::Margin>;
 
 impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
+    /// The atlas of a network that was found in another way, verified by `labels` at many points.
+    ///
+    /// # Errors
+    /// The network or the distances of the verification have no meaning.
+    pub fn verified<E: ToString>(
+        network: Network<Label, Margin>,
+        options: &AtlasOptions,
+        labels: impl FnOnce(&[Point]) -> Vec<Result<Label, E>>,
+    ) -> Result<Self, SubdivisionError> {
+        let mut atlas = Self::unverified(network, options, 1)?;
+        atlas.verify(options, |points| Some(labels(points)))?;
+        Ok(atlas)
+    }
+
     /// The regions of a network, of which none is verified yet.
     pub(crate) fn unverified(
         network: Network<Label, Margin>,

@@ -129,7 +129,7 @@ fn table(out: &mut dyn Write, curve: &CurveRecord) -> io::Result<()> {
     };
     let ends = [curve.points.first(), curve.points.last()];
     let ends = ends.into_iter().flatten().map(|it| row("end", it));
-    let meetings = curve.meetings.iter().map(|it| row(it.kind.name(), &it.orbit));
+    let meetings = curve.meetings.iter().map(|it| row(&it.name, &it.orbit));
     text::aligned(out, &std::iter::once(header).chain(ends).chain(meetings).collect::<Vec<_>>())
 }
 
@@ -137,7 +137,7 @@ fn picture_of(document: &Document<CurveRecord>) -> stickslip_figure::Svg {
     let curve = &document.content;
     let points = curve.points.iter();
     let meetings = curve.meetings.iter().map(|it| SpecialPoint {
-        name: it.kind.name(),
+        name: &it.name,
         at: at(curve, &it.orbit),
         behind: it.behind,
     });
@@ -155,8 +155,8 @@ fn picture_of(document: &Document<CurveRecord>) -> stickslip_figure::Svg {
 /// What `curve --help` says first.
 const ABOUT: &str = "\
 Follow the special orbits of one kind over two parameters, from a branch: where an orbit folds, \
-flips, grazes or begins to slide. Orbits at which something else changes too are located: a fold \
-that meets a graze, and on a curve of neimark-sacker the resonances 1:1 (fold) and 1:2 (flip).
+flips, grazes or begins to slide. Orbits at which something else changes too are located and named: \
+fold-grazing, double-graze, cusp, resonance-1-1, resonance-1-2.
 
 Kinds branch-point and boundary have no curve.";
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
-use stickslip_figure::canvas::style::{BLUE, VERMILION};
+use stickslip_figure::canvas::style::{BLUE, INK, VERMILION};
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::StoredFile;
@@ -188,25 +188,19 @@ fn draw(
         (None, Some(second)) => (name(first), name(second)),
         (None, None) => (format!("{}, once before", name(first)), name(first)),
     };
-    let mut series = Vec::new();
-    for (columns, (label, colour)) in
-        found.iter().zip([("upwards", BLUE), ("downwards", VERMILION)])
-    {
-        let points = columns.iter().flat_map(|Column { value, points, .. }| {
-            let before = std::iter::once(None).chain(points.iter().map(Some));
-            points.iter().zip(before).filter_map(move |(point, before)| {
-                let own = point.state[first];
-                match (axis, second) {
-                    (Some(_), _) => Some((*value, own)),
-                    (None, Some(second)) => Some((own, point.state[second])),
-                    (None, None) => Some((before?.state[first], own)),
-                }
-            })
-        });
-        let name = if axis.is_some() { label.to_owned() } else { String::new() };
-        let mark = Some(Mark { shape: Shape::Dot, colour });
-        series.push(Series { name, points: points.collect(), line: None, mark });
-    }
+    let series = match axis {
+        Some(_) => over(found, first),
+        None => {
+            let points = found.iter().flatten().flat_map(|Column { points, .. }| {
+                let before = std::iter::once(None).chain(points.iter().map(Some));
+                points.iter().zip(before).filter_map(move |(point, before)| match second {
+                    Some(second) => Some((point.state[first], point.state[second])),
+                    None => Some((before?.state[first], point.state[first])),
+                })
+            });
+            vec![dots("", points.collect(), BLUE)]
+        }
+    };
     let range = |of: fn(&(f64, f64)) -> f64| {
         let values = series.iter().flat_map(|it| &it.points).map(of);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -224,6 +218,46 @@ fn draw(
         series,
     })
 }
+
+fn dots(name: &str, points: Vec<(f64, f64)>, colour: &'static str) -> Series {
+    let mark = Some(Mark { shape: Shape::Dot, colour });
+    Series { name: name.to_owned(), points, line: None, mark }
+}
+
+/// The points of a diagram: those upwards, those downwards, and those of both, each place once.
+fn over([up, down]: &[Vec<Column>; 2], component: usize) -> Vec<Series> {
+    let all = || up.iter().chain(down).flat_map(|it| &it.points).map(|it| it.state[component]);
+    let (low, high) =
+        (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let near = (high - low) / PLACES;
+    let mut found: [Vec<(f64, f64)>; 3] = Default::default();
+    for (one, other) in up.iter().zip(down.iter().rev()) {
+        let of = |column: &Column, direction: usize| {
+            let values = column.points.iter().map(move |it| (it.state[component], direction));
+            values.collect::<Vec<_>>()
+        };
+        let mut values = [of(one, 0), of(other, 1)].concat();
+        values.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        let mut rest = &values[..];
+        while let Some(&(first, _)) = rest.first() {
+            let (place, others) =
+                rest.split_at(rest.partition_point(|(it, _)| *it <= first + near));
+            rest = others;
+            let directions = [0, 1].map(|own| place.iter().any(|(_, it)| *it == own));
+            let series = if directions == [true, true] { 2 } else { usize::from(directions[1]) };
+            found[series].push((one.value, first));
+        }
+    }
+    let [up, down, both] = found;
+    vec![
+        dots("upwards", up, BLUE),
+        dots("downwards", down, VERMILION),
+        dots("both ways", both, INK),
+    ]
+}
+
+/// So many places of a diagram are told apart along its axis.
+const PLACES: f64 = 2000.0;
 
 /// What `section --help` says first.
 const ABOUT: &str = "\

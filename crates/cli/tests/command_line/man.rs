@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 25] = [
+const PAGES: [&str; 26] = [
     "stickslip-asymptote.1",
     "stickslip-basins.1",
     "stickslip-branch.1",
@@ -21,6 +21,7 @@ const PAGES: [&str; 25] = [
     "stickslip-man.1",
     "stickslip-map.1",
     "stickslip-orbit.1",
+    "stickslip-regions.1",
     "stickslip-reproduce.1",
     "stickslip-run.1",
     "stickslip-section.1",

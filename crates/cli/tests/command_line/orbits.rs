@@ -98,6 +98,26 @@ fn a_branch_is_followed_and_written() {
 }
 
 #[test]
+fn regions_are_written() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL);
+    let ran = directory.run(
+        "regions ball.slip --itinerary period,bounce --x a=0.01:0.03 --y r=0.65:0.75 --cells 2 \
+         --out regions.json --plot regions.svg",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    for said in ["none", "stable", "fold", "error of boundaries"] {
+        assert!(ran.stdout.contains(said), "{said}: {}", ran.stdout);
+    }
+    let text = directory.read("regions.json");
+    assert!(text.contains("stickslip.orbit-regions/1"));
+    let picture = directory.read("regions.svg");
+    assert!(picture.contains("fold") && picture.contains("stable"));
+    let refused = directory.run("regions ball.slip --itinerary period,bounce --x a=0:1 --y a=0:1");
+    assert!(refused.code == 2 && refused.stderr.contains("two parameters"), "{}", refused.stderr);
+}
+
+#[test]
 fn sections_and_basins_are_written() {
     let directory = Workspace::new();
     directory.write("ball.slip", BALL);

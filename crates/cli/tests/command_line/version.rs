@@ -55,7 +55,7 @@ fn the_commit_is_that_of_the_repository() {
 fn all_schemas_are_listed() {
     let ran = stickslip("--version");
     let listed: Vec<_> = field(&ran.stdout, "schemas").split(' ').collect();
-    assert_eq!(listed.len(), 17);
+    assert_eq!(listed.len(), 18);
     let point = stickslip("collide --kappa 18 --psi 1 --format json");
     let point: serde_json::Value = serde_json::from_str(&point.stdout).expect("JSON");
     assert!(listed.contains(&point["schema"].as_str().expect("a schema")));

@@ -52,6 +52,28 @@ pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, names: &RunNames) -> Svg {
     draw(atlas, &Captions { title: &title, axes, kinds, kind, text, hint })
 }
 
+/// Draws an atlas with the names of its boundaries and the texts of its labels.
+pub fn draw_named<Label, Margin>(
+    atlas: &Atlas<Label, Margin>,
+    names: &impl Names<Label, Margin>,
+    title: &str,
+) -> Svg {
+    let mut kinds: Vec<&str> = Vec::new();
+    for curve in atlas.plane.curves() {
+        let kind = names.kind(&curve.margin);
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    let kind = |margin: &Margin| {
+        let own = names.kind(margin);
+        kinds.iter().position(|it| *it == own).unwrap_or(0)
+    };
+    let text = |label: &Label| names.text(label);
+    let (axes, kinds, text) = (names.axes(), &kinds[..], &text);
+    draw(atlas, &Captions { title, axes, kinds, kind: &kind, text, hint: text })
+}
+
 /// Draws an atlas in its coordinates, with linear axes. Regions in doubt have the text `?`.
 pub fn draw<Label, Margin>(
     atlas: &Atlas<Label, Margin>,

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// What borders a matrix, so that a number is zero exactly where it is singular (Govaerts,
 /// *Numerical Methods for Bifurcations of Dynamical Equilibria*, 2000, chapter 3).
+#[derive(Clone)]
 pub(super) struct Borders {
     column: DVector<f64>,
     row: DVector<f64>,

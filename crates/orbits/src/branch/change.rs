@@ -1,6 +1,10 @@
 //! Where a system begins or ceases to follow the orbits of a branch.
 
-use stickslip_expression::{Inputs, Program, Rule, Trigger};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use stickslip_expression::{Compiled, Inputs, Program, Rule, System, Trigger};
 use stickslip_solver::{Direction, EmbeddedPair};
 
 use super::point::{Along, Point};
@@ -50,8 +54,13 @@ impl Along<'_> {
             if high - low <= narrow {
                 break;
             }
-            let middle = 0.5 * (low + high);
-            let point = self.ahead(from, middle)?;
+            let mut middle = 0.5 * (low + high);
+            let mut point = self.ahead(from, middle)?;
+            // A point on the change itself has neither side.
+            if round < COARSE && point.orbit.is_undecided() {
+                middle = 0.625 * low + 0.375 * high;
+                point = self.ahead(from, middle)?;
+            }
             if point.orbit.is_admissible() == begins {
                 (low, low_point) = (middle, point);
             } else {
@@ -88,7 +97,7 @@ impl Along<'_> {
     }
 
     /// The functions that may change their sign where an obstacle begins.
-    fn margins(
+    pub fn margins(
         &self,
         from: &Point,
         obstacle: &Obstacle,
@@ -184,6 +193,19 @@ impl Along<'_> {
         }
     }
 
+    /// What a margin is measured by.
+    pub fn margin_size(&self, margin: &Margin, point: &Point) -> Option<f64> {
+        let (Margin::Inner { segment, rule }
+        | Margin::AtEnd { segment, rule }
+        | Margin::AtStart { segment, rule }) = *margin
+        else {
+            return Some(0.0);
+        };
+        let both = [Margin::AtStart { segment, rule }, Margin::AtEnd { segment, rule }];
+        let [one, other] = both.map(|it| self.margin(&it, point));
+        Some(one?.abs().max(other?.abs()))
+    }
+
     /// The condition of a rule of the mode of a segment, so that it acts as it falls.
     fn condition(
         &self,
@@ -191,34 +213,21 @@ impl Along<'_> {
         (segment, rule): (usize, usize),
         (s, state): (f64, &[f64]),
     ) -> Option<f64> {
-        let system = &self.orbits.system;
         let mode = self.equations.legs()[segment].mode;
-        let Trigger::When(guard, direction) = system.modes[mode].rules[rule].trigger else {
-            return None;
-        };
-        let components = system.components.len();
-        let inputs = Inputs { components, parameters: system.parameters.len(), fixed: true };
-        let program = Program::compile(&system.graph, &[guard], inputs);
+        let watched = self.watches.of(&self.orbits.system, mode, rule)?;
         let mut value = [f64::NAN];
-        program.with(&point.orbit.parameters).run(s, state, &mut value);
-        Some(if direction == Direction::Rising { -value[0] } else { value[0] })
+        watched.value.with(&point.orbit.parameters).run(s, state, &mut value);
+        Some(if watched.direction == Direction::Rising { -value[0] } else { value[0] })
     }
 
     /// The least extremum of the condition of a rule inside a segment. The extrema are events of
     /// its rate, which bounds decide.
     fn least_extremum(&self, point: &Point, (segment, rule): (usize, usize)) -> Option<f64> {
         let leg = self.equations.legs()[segment];
-        let mut alone = self.orbits.system.clone();
-        let Trigger::When(guard, direction) = alone.modes[leg.mode].rules[rule].trigger else {
-            return None;
-        };
-        let slopes = alone.modes[leg.mode].slopes.clone();
-        let rate = rate(&mut alone.graph, guard, &slopes);
-        let extremum = Rule::new(Trigger::When(rate, Direction::Either));
-        alone.modes[leg.mode].rules = vec![extremum];
+        let watched = self.watches.of(&self.orbits.system, leg.mode, rule)?;
         let orbit = &point.orbit;
         let (own, start) = (&orbit.segments[segment], orbit.time(segment));
-        let runnable = alone.with(&orbit.parameters).ok()?;
+        let runnable = watched.extrema.with(&orbit.parameters).ok()?;
         let runnable = runnable.starting(Some(leg.mode), Some(start), Some(&own.state)).ok()?;
         let mut events = Vec::new();
         let end = start + own.duration;
@@ -226,7 +235,7 @@ impl Along<'_> {
         let _ = run.ok()?;
         let at_start = self.condition(point, (segment, rule), (start, &own.state))?;
         // What acts in both directions acts from the side on which the segment is.
-        let turned = direction == Direction::Either && at_start < 0.0;
+        let turned = watched.direction == Direction::Either && at_start < 0.0;
         let sign = if turned { -1.0 } else { 1.0 };
         let values = events
             .iter()
@@ -235,8 +244,45 @@ impl Along<'_> {
     }
 }
 
+/// Conditions of rules by mode and place, compiled when they are first needed.
+#[derive(Default)]
+pub(crate) struct Watches(RefCell<HashMap<(usize, usize), Option<Rc<Watched>>>>);
+
+/// The condition of a rule.
+struct Watched {
+    direction: Direction,
+    value: Program,
+    /// The system with one rule in the mode, which acts at the extrema of the condition.
+    extrema: Compiled,
+}
+
+impl Watches {
+    fn of(&self, system: &System, mode: usize, rule: usize) -> Option<Rc<Watched>> {
+        let mut known = self.0.borrow_mut();
+        known.entry((mode, rule)).or_insert_with(|| Watched::new(system, mode, rule)).clone()
+    }
+}
+
+impl Watched {
+    fn new(system: &System, mode: usize, rule: usize) -> Option<Rc<Self>> {
+        let Trigger::When(guard, direction) = system.modes[mode].rules[rule].trigger else {
+            return None;
+        };
+        let components = system.components.len();
+        let inputs = Inputs { components, parameters: system.parameters.len(), fixed: true };
+        let value = Program::compile(&system.graph, &[guard], inputs);
+        let mut alone = system.clone();
+        let slopes = alone.modes[mode].slopes.clone();
+        let rate = rate(&mut alone.graph, guard, &slopes);
+        alone.modes[mode].rules = vec![Rule::new(Trigger::When(rate, Direction::Either))];
+        let extrema = alone.compile().ok()?;
+        Some(Rc::new(Self { direction, value, extrema }))
+    }
+}
+
 /// A function along a branch that changes its sign where an obstacle begins.
-pub(super) enum Margin {
+#[derive(Clone, PartialEq)]
+pub(crate) enum Margin {
     /// The least extremum of a rule's condition inside a segment.
     Inner { segment: usize, rule: usize },
     /// The condition at the end of a segment.

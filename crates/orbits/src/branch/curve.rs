@@ -2,25 +2,27 @@
 //!
 //! What is zero along a branch at a special orbit is one more equation, and a second parameter one
 //! more unknown. Its derivatives are differences of its values, which are computed once for each
-//! step: they make the search a little slower, and its result no less accurate.
+//! place: they make the search a little slower, and its result no less accurate. `station` has
+//! places and the way from one to the next, `meetings` where something else changes too.
 
-use nalgebra::{DMatrix, DVector};
+mod meetings;
+mod station;
+
+use nalgebra::{DVector, Vector2};
 use stickslip_expression::InvalidValue;
+use stickslip_tracer::{Cubic, Node};
 
-use super::borders::{Borders, null_vectors};
-use super::change::Margin;
-use super::locate::zero;
-use super::point::{Along, LEAST_TURN, NO_DIRECTION, Point};
-use super::test::Test;
+use super::change::{Margin, Watches};
+use super::point::{Along, Point};
+use super::test::{Test, has_torus};
 use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
-use crate::newton::correct;
 use crate::orbit::Orbit;
 
-/// How far unknowns are moved for differences.
-const APART: f64 = 1e-5;
+/// Halvings of a step for closer points, at most.
+const DEEPEST: usize = 10;
 
 /// Special orbits of one kind over two parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +36,9 @@ pub struct SpecialCurve<P = usize, O = Orbit> {
     pub window: [[f64; 2]; 2],
     /// The orbits, in the order of the curve.
     pub points: Vec<O>,
+    /// The direction of the curve at each of them, of length 1 in the plane of the parameters.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub tangents: Vec<[f64; 2]>,
     /// Orbits at which something else changes too, in the order of the curve.
     pub meetings: Vec<Meeting<O>>,
     /// Whether the curve comes back to its start.
@@ -46,9 +51,17 @@ pub struct SpecialCurve<P = usize, O = Orbit> {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Meeting<O = Orbit> {
-    /// What changes besides. On a curve of `neimark-sacker`, `fold` is the resonance 1:1 and `flip`
-    /// the resonance 1:2.
+    /// What it is called: `resonance-1-1` where both multipliers of a torus are 1, `resonance-1-2`
+    /// where they are −1, `double-graze`, `cusp`, and otherwise what changes and what is followed,
+    /// as `fold-grazing`.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub name: String,
+    /// What changes besides.
     pub kind: SpecialKind,
+    /// The direction of the curve there, of length 1 in the plane of the parameters; that towards
+    /// the place if it is a cusp.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub tangent: [f64; 2],
     /// The segment at which it happens, if it happens at one.
     pub segment: Option<usize>,
     /// The number of points of the curve before it.
@@ -58,6 +71,7 @@ pub struct Meeting<O = Orbit> {
 }
 
 /// What is zero along a curve.
+#[derive(Clone)]
 enum Tracked {
     Test(Test),
     Margin(Margin),
@@ -68,6 +82,9 @@ enum Tracked {
 struct Station {
     point: Point,
     tangent: DVector<f64>,
+    /// What is zero there, and its derivatives, with which the next place is searched for.
+    tracked: Tracked,
+    gradient: DVector<f64>,
 }
 
 /// What a curve follows.
@@ -75,6 +92,14 @@ struct Follower<'a> {
     along: Along<'a>,
     special: &'a SpecialOrbit,
     window: [[f64; 2]; 2],
+    /// How far a cubic between two points may be from the curve, if it matters.
+    interpolation: Option<f64>,
+}
+
+/// An orbit of a curve with its direction.
+struct CurvePoint {
+    orbit: Orbit,
+    tangent: [f64; 2],
 }
 
 impl Orbits {
@@ -89,6 +114,19 @@ impl Orbits {
         parameters: [usize; 2],
         window: [[f64; 2]; 2],
         options: &BranchOptions,
+    ) -> Result<SpecialCurve, OrbitError> {
+        self.curve_within(special, parameters, window, options, None)
+    }
+
+    /// As [`Self::curve`], with so many points that the cubics between them are as near to the
+    /// curve as this.
+    pub(crate) fn curve_within(
+        &self,
+        special: &SpecialOrbit,
+        parameters: [usize; 2],
+        window: [[f64; 2]; 2],
+        options: &BranchOptions,
+        interpolation: Option<f64>,
     ) -> Result<SpecialCurve, OrbitError> {
         options.validate()?;
         self.compiled.with(&special.orbit.parameters)?;
@@ -109,174 +147,83 @@ impl Orbits {
         let active = [0, 1].map(|k| (parameters[k], window[k][1] - window[k][0]));
         let draft = special.orbit.draft();
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
-        let along = Along { orbits: self, equations: &equations, parameter: one, range: window[0] };
-        let follower = Follower { along, special, window };
+        let (equations, range) = (&equations, window[0]);
+        let along = Along {
+            orbits: self,
+            equations,
+            parameter: one,
+            range,
+            judged: false,
+            watches: Watches::default(),
+        };
+        let follower = Follower { along, special, window, interpolation };
         // The special orbit may have been written and read.
-        let start = follower.ahead(&follower.first(&equations.place(&draft))?, 0.0, None)?;
+        let start = follower.ahead(&follower.station(equations.place(&draft), None)?, 0.0, None)?;
         let ahead = follower.half(&start, options);
         let turned = Station { tangent: -&start.tangent, ..start.clone() };
-        let back = (!ahead.closed).then(|| follower.half(&turned, options));
-        let start = self.judged(&equations, &start.point.orbit)?;
+        let mut back = (!ahead.closed).then(|| follower.half(&turned, options));
+        if let Some(back) = &mut back {
+            let points = back.points.iter_mut().map(|it| &mut it.tangent);
+            for tangent in points.chain(back.specials.iter_mut().map(|it| &mut it.tangent)) {
+                *tangent = tangent.map(|it| -it);
+            }
+        }
+        let start = follower.finished(&start);
         let Half { points, specials: meetings, closed, objection } =
             ahead.joined(start, back, |meeting| &mut meeting.behind);
         let kind = special.kind;
-        Ok(SpecialCurve { kind, parameters, window, points, meetings, closed, objection })
+        let (points, tangents) = points.into_iter().map(|it| (it.orbit, it.tangent)).unzip();
+        Ok(SpecialCurve { kind, parameters, window, points, tangents, meetings, closed, objection })
     }
 }
 
 impl Follower<'_> {
-    /// The function that is zero along the curve, from a point on.
-    fn tracked(&self, point: &Point) -> Result<Tracked, OrbitError> {
-        let equations = self.along.equations;
-        let slopes = &point.evaluation.slopes;
-        let SpecialOrbit { kind, segment, rule, .. } = *self.special;
-        let unknown = || {
-            let expected = "a kind of special orbit that has a function: not `branch-point` and \
-                            not `boundary`";
-            InvalidValue::new("the special orbit", kind.name(), expected)
-        };
-        Ok(match (kind, segment, rule) {
-            (SpecialKind::Fold, ..) => {
-                Tracked::Test(Test::Singular(Borders::of(&equations.returning(slopes, 1.0))))
-            }
-            (SpecialKind::Flip, ..) => {
-                Tracked::Test(Test::Flip(Borders::of(&equations.returning(slopes, -1.0))))
-            }
-            (SpecialKind::NeimarkSacker, ..) => Tracked::Test(Test::NeimarkSacker),
-            (
-                SpecialKind::Grazing | SpecialKind::GrazingSliding | SpecialKind::AddingSliding,
-                Some(segment),
-                Some(rule),
-            ) => {
-                let event = &point.evaluation.ends[segment].event;
-                let at_event = equations.legs()[segment].rule == rule && event.grazes();
-                if at_event {
-                    Tracked::Test(Test::Rate(segment))
-                } else {
-                    Tracked::Margin(Margin::Inner { segment, rule })
-                }
-            }
-            (SpecialKind::SlidingEdge | SpecialKind::Choice, Some(segment), _) => {
-                Tracked::Margin(Margin::Choice { segment })
-            }
-            (SpecialKind::VanishingSegment, Some(segment), _) => {
-                Tracked::Margin(Margin::Duration { segment })
-            }
-            (SpecialKind::CornerCollision, Some(segment), Some(rule)) => {
-                let both = [Margin::AtEnd { segment, rule }, Margin::AtStart { segment, rule }];
-                let size = |margin: &Margin| {
-                    self.along.margin(margin, point).map_or(f64::INFINITY, f64::abs)
-                };
-                let [one, other] = both;
-                Tracked::Margin(if size(&one) <= size(&other) { one } else { other })
-            }
-            _ => return Err(unknown().into()),
-        })
+    /// The direction at a place in the plane of the parameters.
+    fn plane_tangent(&self, tangent: &DVector<f64>) -> Vector2<f64> {
+        let [x, y] = self.parameters(tangent);
+        let [across, up] = self.window.map(|[low, high]| high - low);
+        Vector2::new(x * across, y * up)
     }
 
-    fn value(&self, tracked: &Tracked, point: &Point) -> f64 {
-        let value = match tracked {
-            Tracked::Test(test) => test.value(&self.along, point),
-            Tracked::Margin(margin) => self.along.margin(margin, point),
-        };
-        value.unwrap_or(f64::NAN)
+    fn node(&self, station: &Station) -> Node {
+        let orbit = &station.point.orbit;
+        let [x, y] = [0, 1].map(|k| orbit.parameters[self.places()[k]]);
+        let tangent = self.plane_tangent(&station.tangent);
+        Node { point: Vector2::new(x, y), tangent: tangent.try_normalize(0.0).unwrap_or(tangent) }
     }
 
-    fn value_at(&self, tracked: &Tracked, place: &DVector<f64>) -> f64 {
-        let point = self.along.sketch(place.clone());
-        point.map_or(f64::NAN, |point| self.value(tracked, &point))
+    /// The parameters, by their places in the system.
+    fn places(&self) -> [usize; 2] {
+        let active = self.along.equations.active();
+        [active[0], active[1]]
     }
 
-    /// The derivatives of the function by all unknowns.
-    fn gradient(&self, tracked: &Tracked, place: &DVector<f64>) -> DVector<f64> {
-        let by = (0..place.len()).map(|unknown| {
-            let [above, below] = [APART, -APART].map(|apart| {
-                let mut moved = place.clone();
-                moved[unknown] += apart;
-                self.value_at(tracked, &moved)
-            });
-            (above - below) / (2.0 * APART)
-        });
-        DVector::from_iterator(place.len(), by)
+    /// The orbit of a station with its verdict.
+    fn finished(&self, station: &Station) -> CurvePoint {
+        let own = &station.point.orbit;
+        let judged = self.along.orbits.judged(self.along.equations, own);
+        let orbit = judged.unwrap_or_else(|_| own.clone());
+        CurvePoint { orbit, tangent: self.node(station).tangent.into() }
     }
 
-    /// The station at which a curve starts.
-    fn first(&self, place: &DVector<f64>) -> Result<Station, OrbitError> {
-        let point = self.along.sketch(place.clone())?;
-        let tracked = self.tracked(&point)?;
-        let gradient = self.gradient(&tracked, place);
-        let tangent = direction(&point.evaluation.slopes, &gradient, None);
-        tangent.map(|tangent| Station { point, tangent }).ok_or(NO_DIRECTION)
-    }
-
-    /// The station ahead of another one by a length along its tangent, or where a parameter has a
-    /// value.
-    fn ahead(
-        &self,
-        from: &Station,
-        length: f64,
-        fixed: Option<(usize, f64)>,
-    ) -> Result<Station, OrbitError> {
-        let tracked = self.tracked(&from.point)?;
-        let start = &from.point.place + length * &from.tangent;
-        let gradient = self.gradient(&tracked, &start);
-        let special = |place: &DVector<f64>| (self.value_at(&tracked, place), gradient.clone());
-        let step = |place: &DVector<f64>| match fixed {
-            None => (from.tangent.dot(&(place - &start)), from.tangent.clone()),
-            Some((unknown, value)) => {
-                let mut axis = DVector::zeros(place.len());
-                axis[unknown] = 1.0;
-                (place[unknown] - value, axis)
-            }
-        };
-        let found = correct(self.along.equations, &start, &[&special, &step])?;
-        let point = self.along.sketch(found.at)?;
-        let gradient = self.gradient(&tracked, &point.place);
-        let tangent = direction(&point.evaluation.slopes, &gradient, Some(&from.tangent));
-        tangent.map(|tangent| Station { point, tangent }).ok_or(NO_DIRECTION)
-    }
-
-    /// The parameters at a place, in parts of the lengths of their ranges.
-    fn parameters(&self, place: &DVector<f64>) -> [f64; 2] {
-        let count = self.along.equations.count();
-        [place[count], place[count + 1]]
-    }
-
-    /// Where the window ends in a parameter, in the same parts.
-    fn ends(&self, parameter: usize) -> [f64; 2] {
-        let [low, high] = self.window[parameter];
-        [low / (high - low), high / (high - low)]
-    }
-
-    /// The next station: at most by `step` ahead, and not beyond the window.
-    fn next(&self, from: &Station, step: f64) -> Result<(Station, bool), OrbitError> {
-        let next = self.ahead(from, step, None)?;
-        let turn = from.tangent.dot(&next.tangent);
-        if turn < LEAST_TURN {
-            let reason = "the curve turns sharply";
-            return Err(OrbitError::NotFound { reason, segment: 0, update: step });
+    /// The stations between two others that make cubics near enough.
+    fn between(&self, from: &Station, to: &Station, depth: usize, found: &mut Vec<Station>) {
+        let Some(most) = self.interpolation else { return };
+        let length = from.tangent.dot(&(&to.point.place - &from.point.place));
+        let Ok(middle) = self.ahead(from, 0.5 * length, None) else { return };
+        let [one, other, own] = [from, to, &middle].map(|it| self.node(it));
+        let near = distance(&Cubic::between(&one, &other), &own.point) <= most;
+        if depth < DEEPEST && !near {
+            self.between(from, &middle, depth + 1, found);
         }
-        let before = self.parameters(&from.point.place);
-        let values = self.parameters(&next.point.place);
-        let mut first: Option<(f64, usize, f64)> = None;
-        for (parameter, value) in values.into_iter().enumerate() {
-            let [low, high] = self.ends(parameter);
-            let end = if value < low { low } else { high };
-            if !(low..=high).contains(&value) {
-                let part = (end - before[parameter]) / (value - before[parameter]);
-                if first.is_none_or(|(other, ..)| part < other) {
-                    first = Some((part, parameter, end));
-                }
-            }
+        found.push(middle.clone());
+        if depth < DEEPEST && !near {
+            self.between(&middle, to, depth + 1, found);
         }
-        let Some((part, parameter, end)) = first else { return Ok((next, false)) };
-        let unknown = self.along.equations.count() + parameter;
-        let last = self.ahead(from, part * step, Some((unknown, end)))?;
-        Ok((last, true))
     }
 
     /// Follows a curve in one direction, without its first point.
-    fn half(&self, start: &Station, options: &BranchOptions) -> Half<Meeting> {
+    fn half(&self, start: &Station, options: &BranchOptions) -> Half<Meeting, CurvePoint> {
         let (mut half, mut last) = (Half::default(), start.clone());
         let mut step = options.first_step;
         loop {
@@ -297,24 +244,50 @@ impl Follower<'_> {
                     return half;
                 }
             };
-            let behind = half.points.len() + 1;
-            match self.meetings(&last, &next, behind) {
-                Ok(meetings) => half.specials.extend(meetings),
-                Err(error) => half.objection = Some(format!("a meeting is not located: {error}")),
-            }
+            let mut meetings = self.meetings(&last, &next).unwrap_or_else(|error| {
+                half.objection = Some(format!("a meeting is not located: {error}"));
+                Vec::new()
+            });
             let away = &start.point.place - &last.point.place;
             let along = last.tangent.dot(&away);
-            let closed = behind > 5
+            half.closed = half.points.len() > 4
                 && (0.0..=step).contains(&along)
                 && (away - along * &last.tangent).norm() < 0.2 * step
                 && last.tangent.dot(&start.tangent) > 0.9;
-            if closed {
-                half.closed = true;
+            // A curve of tori ends at its resonances.
+            let ends = self.special.kind == SpecialKind::NeimarkSacker && !has_torus(&next.point);
+            let resonance = ends.then(|| meetings.iter().position(|it| it.is_resonance()));
+            if let Some(place) = resonance {
+                match place {
+                    Some(place) => meetings.truncate(place + 1),
+                    None => half.objection = Some("multipliers cease to be complex".to_owned()),
+                }
+            }
+            let to = match (&resonance, half.closed) {
+                (Some(Some(place)), _) => &meetings[*place].station,
+                (_, true) => start,
+                _ => &next,
+            };
+            let mut between = Vec::new();
+            let mut from = &last;
+            for cusp in meetings.iter().filter(|it| it.kind == SpecialKind::Cusp) {
+                self.between(from, &cusp.station, 0, &mut between);
+                from = &cusp.station;
+            }
+            self.between(from, to, 0, &mut between);
+            let at =
+                |station: &Station| last.tangent.dot(&(&station.point.place - &last.point.place));
+            for meeting in &meetings {
+                let before = between.iter().filter(|it| at(it) < at(&meeting.station)).count();
+                let behind = half.points.len() + 1 + before;
+                half.specials.push(self.named(meeting, behind));
+            }
+            half.points.extend(between.iter().map(|it| self.finished(it)));
+            if half.closed || resonance == Some(None) {
                 return half;
             }
-            let orbit = self.along.orbits.judged(self.along.equations, &next.point.orbit);
-            half.points.push(orbit.unwrap_or_else(|_| next.point.orbit.clone()));
-            if is_last {
+            half.points.push(self.finished(to));
+            if is_last || ends {
                 return half;
             }
             if last.tangent.dot(&next.tangent) > 0.995 {
@@ -323,66 +296,17 @@ impl Follower<'_> {
             last = next;
         }
     }
-
-    /// Where something else changes between two stations.
-    fn meetings(
-        &self,
-        from: &Station,
-        to: &Station,
-        behind: usize,
-    ) -> Result<Vec<Meeting>, OrbitError> {
-        let length = from.tangent.dot(&(&to.point.place - &from.point.place));
-        let slopes = &from.point.evaluation.slopes;
-        let equations = self.along.equations;
-        let bordered = |factor: f64| Borders::of(&equations.returning(slopes, factor));
-        let mut tests = Vec::new();
-        if self.special.kind != SpecialKind::Fold {
-            tests.push((SpecialKind::Fold, None, Test::Singular(bordered(1.0))));
-        }
-        if self.special.kind != SpecialKind::Flip {
-            tests.push((SpecialKind::Flip, None, Test::Flip(bordered(-1.0))));
-        }
-        let own = self.tracked(&from.point)?;
-        for segment in 0..from.point.evaluation.ends.len() {
-            if !matches!(own, Tracked::Test(Test::Rate(own)) if own == segment) {
-                tests.push((SpecialKind::Grazing, Some(segment), Test::Rate(segment)));
-            }
-        }
-        let mut found: Vec<(f64, Meeting)> = Vec::new();
-        for (kind, segment, test) in tests {
-            let values = (test.value(&self.along, &from.point), test.value(&self.along, &to.point));
-            let (Some(one), Some(other)) = values else { continue };
-            if (one < 0.0) == (other < 0.0) || other == 0.0 {
-                continue;
-            }
-            let place = zero((length, one, other), |at| {
-                let station = self.ahead(from, at, None)?;
-                Ok(test.value(&self.along, &station.point).map(|value| (value, station)))
-            })?;
-            if let Some((at, station)) = place {
-                let orbit = self.along.orbits.judged(equations, &station.point.orbit)?;
-                found.push((at, Meeting { kind, segment, behind, orbit }));
-            }
-        }
-        found.sort_by(|one, other| one.0.total_cmp(&other.0));
-        Ok(found.into_iter().map(|(_, meeting)| meeting).collect())
-    }
 }
 
-/// The direction of a curve, of length 1, towards the side of another one.
-fn direction(
-    slopes: &DMatrix<f64>,
-    gradient: &DVector<f64>,
-    towards: Option<&DVector<f64>>,
-) -> Option<DVector<f64>> {
-    let count = slopes.nrows();
-    let mut matrix = slopes.clone().insert_rows(count, 2, 0.0);
-    let size = gradient.norm();
-    if !(size > 0.0 && size.is_finite()) {
-        return None;
+/// How far a point is from a cubic near its middle.
+pub(crate) fn distance(cubic: &Cubic, point: &Vector2<f64>) -> f64 {
+    let mut t = 0.5;
+    for _ in 0..4 {
+        let along = cubic.derivative(t);
+        let step = along.dot(&(point - cubic.at(t))) / along.norm_squared();
+        if step.is_finite() {
+            t = (t + step).clamp(0.0, 1.0);
+        }
     }
-    matrix.row_mut(count).copy_from(&(gradient / size).transpose());
-    let unit = null_vectors(&matrix).1;
-    let turned = towards.is_some_and(|towards| unit.dot(towards) < 0.0);
-    Some(if turned { -unit } else { unit })
+    (point - cubic.at(t)).norm()
 }

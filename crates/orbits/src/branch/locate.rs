@@ -67,7 +67,7 @@ impl Along<'_> {
     }
 
     /// Where a function changes its sign from `one` at a point to `other` ahead by a length.
-    pub(super) fn zero(
+    pub fn zero(
         &self,
         from: &Point,
         signs: (f64, f64, f64),

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::borders::null_vectors;
+use super::change::Watches;
 use crate::equations::{Draft, Equations, Evaluation};
 use crate::error::OrbitError;
 use crate::find::Orbits;
@@ -17,16 +18,19 @@ pub(super) const NO_DIRECTION: OrbitError = OrbitError::nowhere("the branch has 
 const FARTHEST: f64 = 1.5;
 
 /// What a branch follows.
-pub(super) struct Along<'a> {
+pub(crate) struct Along<'a> {
     pub orbits: &'a Orbits,
     pub equations: &'a Equations,
     pub parameter: usize,
     pub range: [f64; 2],
+    /// Whether points have verdicts.
+    pub judged: bool,
+    pub watches: Watches,
 }
 
 /// A point of a branch.
 #[derive(Clone, Debug)]
-pub(super) struct Point {
+pub(crate) struct Point {
     pub place: DVector<f64>,
     /// The direction of the branch, of length 1.
     pub tangent: DVector<f64>,
@@ -60,7 +64,7 @@ impl Along<'_> {
 
     /// The value of the parameter at a place.
     pub fn value(&self, place: &DVector<f64>) -> f64 {
-        place[self.last()] * (self.range[1] - self.range[0])
+        place[self.last()] * self.equations.size(self.last())
     }
 
     /// The point at which a branch starts.
@@ -74,7 +78,8 @@ impl Along<'_> {
 
     /// The place near another one with this value of the parameter.
     fn at_parameter(&self, near: &DVector<f64>, value: f64) -> Result<DVector<f64>, OrbitError> {
-        let (last, wanted) = (self.last(), value / (self.range[1] - self.range[0]));
+        let last = self.last();
+        let wanted = value / self.equations.size(last);
         let condition = |place: &DVector<f64>| {
             let mut axis = DVector::zeros(place.len());
             axis[last] = 1.0;
@@ -98,7 +103,11 @@ impl Along<'_> {
         let evaluation = self.equations.at(&place)?;
         let tangent = tangent(&evaluation.slopes, direction).ok_or(NO_DIRECTION)?;
         let draft = self.equations.draft(&place);
-        let orbit = self.orbits.orbit(self.equations, &draft, &evaluation, 1e-13)?;
+        let orbit = if self.judged {
+            self.orbits.orbit(self.equations, &draft, &evaluation, 1e-13)?
+        } else {
+            Orbits::sketched(self.equations, &draft, &evaluation, 1e-13)
+        };
         Ok(Point { place, tangent, evaluation, orbit })
     }
 
@@ -133,7 +142,7 @@ impl Along<'_> {
         let part = (end - before) / (value - before);
         let near = &from.place + part * (&next.place - &from.place);
         let mut place = self.at_parameter(&near, end)?;
-        place[last] = end / (high - low);
+        place[last] = end / self.equations.size(last);
         self.point(place, &from.tangent)
     }
 

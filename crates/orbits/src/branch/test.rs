@@ -10,6 +10,7 @@ use super::point::{Along, Point};
 const NEAR: f64 = 1e-4;
 
 /// A function along a branch.
+#[derive(Clone)]
 pub(super) enum Test {
     /// How the parameter goes on.
     Fold,
@@ -19,7 +20,8 @@ pub(super) enum Test {
     Singular(Borders),
     /// The derivatives along the branch, bordered.
     BranchPoint(Borders),
-    /// The size of complex multipliers, less 1.
+    /// The product, over all pairs of multipliers, of what the product of a pair has above 1. It is
+    /// smooth where two complex multipliers become real.
     NeimarkSacker,
     /// The rate of the condition at the end of a segment.
     Rate(usize),
@@ -47,7 +49,7 @@ impl Test {
                 borders.value(&along.equations.returning(&point.evaluation.slopes, 1.0))
             }
             Self::BranchPoint(borders) => borders.value(&bordered_by_tangent(point)),
-            Self::NeimarkSacker => complex_size(point),
+            Self::NeimarkSacker => pairs(point),
             Self::Rate(segment) => {
                 // The tick of a clock does not graze.
                 let event = &point.evaluation.ends[*segment].event;
@@ -76,10 +78,7 @@ impl Test {
             Self::Fold | Self::Singular(_) => has(1.0).then_some((SpecialKind::Fold, None)),
             Self::Flip(_) => has(-1.0).then_some((SpecialKind::Flip, None)),
             Self::BranchPoint(_) => has(1.0).then_some((SpecialKind::BranchPoint, None)),
-            Self::NeimarkSacker => {
-                let near = complex_size(point).is_some_and(|size| size.abs() < NEAR);
-                near.then_some((SpecialKind::NeimarkSacker, None))
-            }
+            Self::NeimarkSacker => has_torus(point).then_some((SpecialKind::NeimarkSacker, None)),
             Self::Rate(segment) => {
                 let slides = before.evaluation.ends[*segment].event.slides_behind();
                 let kind = along.touch(before, *segment, slides);
@@ -89,11 +88,23 @@ impl Test {
     }
 }
 
-/// The size of complex multipliers less 1, of those that are nearest to it.
-fn complex_size(point: &Point) -> Option<f64> {
-    let sizes = point.orbit.multipliers.iter().flatten().filter(|[_, im]| *im > 0.0);
-    let sizes = sizes.map(|[re, im]| re.hypot(*im) - 1.0);
-    sizes.min_by(|one, other| one.abs().total_cmp(&other.abs()))
+/// The product of μⱼμₖ − 1 over all pairs of multipliers, a function of their symmetric functions.
+fn pairs(point: &Point) -> Option<f64> {
+    let all = point.orbit.multipliers.as_ref()?;
+    let mut product = [1.0, 0.0];
+    for (j, [re, im]) in all.iter().enumerate() {
+        for [other_re, other_im] in &all[j + 1..] {
+            let [x, y] = [re * other_re - im * other_im - 1.0, re * other_im + im * other_re];
+            product = [product[0] * x - product[1] * y, product[0] * y + product[1] * x];
+        }
+    }
+    (all.len() > 1).then_some(product[0])
+}
+
+/// Whether two complex multipliers have the size 1.
+pub(super) fn has_torus(point: &Point) -> bool {
+    let mut all = point.orbit.multipliers.iter().flatten();
+    all.any(|[re, im]| *im > 0.0 && (re.hypot(*im) - 1.0).abs() < NEAR)
 }
 
 fn bordered_by_tangent(point: &Point) -> DMatrix<f64> {

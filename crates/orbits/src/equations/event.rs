@@ -132,7 +132,9 @@ impl Event {
         let jump = &self.slopes_after - reset * &self.slopes - self.after_by.column(n);
         // A clock acts at its time, and a rule that changes nothing leaves differences as they are.
         let plain = by.amax() == 0.0 || jump.amax() == 0.0;
-        reset + if plain { DMatrix::zeros(n, n) } else { jump * by / self.rate() }
+        // A rate that rounding makes has no digit.
+        let rate = if self.rate().abs() <= STILL * self.rate_size() { 0.0 } else { self.rate() };
+        reset + if plain { DMatrix::zeros(n, n) } else { jump * by / rate }
     }
 
     /// Whether the formulas have the same values at another time.
@@ -159,7 +161,7 @@ impl Event {
     }
 
     /// What the rate of the condition is made of.
-    fn rate_size(&self) -> f64 {
+    pub fn rate_size(&self) -> f64 {
         let parts = (0..self.slopes.len()).map(|k| (self.guard_by[k] * self.slopes[k]).abs());
         let size = parts.fold(self.guard_by[self.slopes.len()].abs(), f64::max);
         // At a graze of one part, all of it vanishes: then it is as large as the slopes.

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stickslip_orbits::{BranchOptions, Orbit, SpecialCurve, SpecialKind};
+use stickslip_expression::System;
+use stickslip_orbits::{BranchOptions, Guess, Orbit, Orbits, SpecialCurve, SpecialKind};
 
 use crate::impact::{self, Closed};
 
@@ -48,7 +49,7 @@ fn grazes_of_impacts_have_their_closed_form() {
     assert!((ends[0] - 0.6).abs() < 1e-12 && (ends[1] - 1.4).abs() < 1e-12, "{ends:?}");
     // The fold meets the graze at w = 2nΩ/m.
     let natural = (1.0_f64 - 0.0025).sqrt();
-    let meets = found.meetings.iter().filter(|it| it.kind == SpecialKind::Fold);
+    let meets = found.meetings.iter().filter(|it| it.name == "fold-grazing");
     let meets: Vec<f64> = meets.map(|it| it.orbit.parameters[4]).collect();
     assert!(meets.iter().any(|w| (w - natural).abs() < 1e-6), "{meets:?} {natural}");
 }
@@ -89,4 +90,85 @@ fn tori_of_impacts_begin_where_the_product_of_multipliers_is_one() {
         let [c, w] = [orbit.parameters[1], orbit.parameters[4]];
         assert!((c - 2.0 * 0.8_f64.ln() * w / TAU).abs() < 1e-10, "{c} {w} {PI}");
     }
+}
+
+/// Where the multipliers of a torus are both 1 or both −1, its curve ends.
+#[test]
+fn curves_of_tori_end_at_resonances() {
+    let closed = Closed { c: -0.05, a: 0.8, ..Closed::EXAMPLE };
+    let window = [[0.4, 1.9], [-0.3, 0.0]];
+    let found = curve(&closed, SpecialKind::NeimarkSacker, (1, [-0.2, 0.0]), [4, 1], window);
+    let ends: Vec<&str> = found.meetings.iter().map(|it| &*it.name).collect();
+    println!("{ends:?} {:?}", found.objection);
+    assert!(found.objection.is_none(), "{:?}", found.objection);
+    let resonances = found.meetings.iter().filter(|it| it.name.starts_with("resonance"));
+    let mut count = 0;
+    for meeting in resonances {
+        let [c, w] = [1, 4].map(|k| meeting.orbit.parameters[k]);
+        let v = meeting.orbit.segments.last().expect("segments").end[1];
+        let trace = Closed { c, w, ..closed }.trace(v);
+        let exact = if meeting.name == "resonance-1-1" { 2.0 } else { -2.0 };
+        println!("{} {c} {w} {trace}", meeting.name);
+        assert!((trace - exact).abs() < 1e-6, "{} {trace}", meeting.name);
+        count += 1;
+    }
+    assert!(count > 0, "{ends:?}");
+}
+
+/// A phase between two conditions, which touch zero at m = 1 and at n = 1.
+pub const TWO_TOUCHES: &str = "parameter m = 0.7, n = 0.8\nstate phase = 1, x = 0\nmode turn\n  \
+    phase' = 1\n  x' = -x\n  when phase > 2*pi \"phase\"\n    phase := phase - 2*pi\n  when \
+    m*cos(phase - 3) > 1 \"one\" -> out\n  when n*cos(phase - 5) > 1 \"two\" -> out\nmode out\n  \
+    phase' = 1\n  x' = 1\nstart in turn\nend = 9";
+
+/// The orbits of a text with an itinerary, and the curve of the first special orbit of a kind.
+fn planted(
+    text: &str,
+    itinerary: &[&str],
+    (kind, range): (SpecialKind, [f64; 2]),
+    window: [[f64; 2]; 2],
+) -> SpecialCurve {
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary, ..Guess::default() };
+    let orbit = orbits.find(&system.values(), &guess).expect("an orbit");
+    let options = BranchOptions::default();
+    let branch = orbits.branch(&orbit, 0, range, &options).expect("a branch");
+    let special = branch.specials.iter().find(|it| it.kind == kind);
+    let special = special.unwrap_or_else(|| panic!("{kind:?}: {:?}", branch.specials));
+    orbits.curve(special, [0, 1], window, &options).expect("a curve")
+}
+
+#[test]
+fn two_grazes_at_once() {
+    let special = (SpecialKind::Grazing, [0.5, 1.5]);
+    let found = planted(TWO_TOUCHES, &["phase"], special, [[0.5, 1.5], [0.5, 1.5]]);
+    assert!(found.points.iter().all(|it| (it.parameters[0] - 1.0).abs() < 1e-11));
+    let [meeting] = &found.meetings[..] else { panic!("{:?}", found.meetings) };
+    assert_eq!((&*meeting.name, meeting.segment), ("double-graze", Some(0)));
+    assert!((meeting.orbit.parameters[1] - 1.0).abs() < 1e-10, "{:?}", meeting.orbit.parameters);
+    assert_eq!(found.objection, None);
+}
+
+/// Beside a relay, y' = m + n y − y³ folds where 27 m² = 4 n³.
+pub const CUSP: &str = "parameter m = 0.1, n = 1\nstate x = 0, y = 1\ny' = m + n*y - y^3\nmode up\n  \
+    x' = 1 - x\n  when x > 0.5 \"up\" -> down\nmode down\n  x' = -1 - x\n  when x < -0.5 \"down\" \
+    -> up\nstart in up\nend = 9";
+
+#[test]
+fn folds_meet_at_a_cusp() {
+    let special = (SpecialKind::Fold, [-0.9, 0.9]);
+    let found = planted(CUSP, &["up", "down"], special, [[-0.9, 0.9], [-0.6, 1.4]]);
+    assert!(found.points.len() > 10 && found.objection.is_none(), "{:?}", found.objection);
+    for orbit in &found.points {
+        let [m, n] = [orbit.parameters[0], orbit.parameters[1]];
+        assert!((27.0 * m * m - 4.0 * n * n * n).abs() < 1e-9, "{m} {n}");
+    }
+    let cusps: Vec<_> = found.meetings.iter().filter(|it| it.name == "cusp").collect();
+    assert_eq!(cusps.len(), 1, "{:?}", found.meetings);
+    let at = &cusps[0].orbit.parameters;
+    assert!(at[0].abs() < 1e-9 && at[1].abs() < 1e-6, "{at:?}");
+    // Both branches of the cusp leave the window.
+    let ends = [&found.points[0], &found.points[found.points.len() - 1]];
+    assert!(ends.iter().all(|it| it.parameters[1] > 1.39 || it.parameters[0].abs() > 0.89));
 }

@@ -70,7 +70,7 @@ impl Closed {
         self.e * self.e * (-self.c * self.period()).exp()
     }
     /// How far the wall is between impacts, at least.
-    fn room(&self, v: f64) -> f64 {
+    pub fn room(&self, v: f64) -> f64 {
         let shift = (self.c * self.w).atan2(self.k - self.w * self.w);
         let (size, phase) = (self.a / self.impedance(), self.phase(v));
         let forced = |t: f64| size * (self.w * t + phase - shift).cos();
@@ -173,4 +173,33 @@ fn random_parameters_have_the_orbits_of_the_closed_form() {
     println!("{compared} orbits, {admissible} admissible, errors {worst:?}");
     assert!(admissible > 200 && compared - admissible > 200);
     assert!(worst.iter().all(|error| *error < 1e-9), "{worst:?}");
+}
+
+/// Beside the graze the impact has a small speed. An orbit whose speed is negative has hit the wall
+/// just before, and is not followed, however near that is.
+#[test]
+fn grazing_impacts_have_the_side_of_their_speed() {
+    let orbits = orbits();
+    let mut decided = 0;
+    for w in [0.8, 1.2] {
+        for part in [-1e-3, -1e-5, -1e-6, -1e-7, -1e-9, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3] {
+            let closed = Closed { w, ..Closed::EXAMPLE };
+            let closed = Closed { a: closed.impedance() * (1.0 + part), ..closed };
+            let speeds = closed.speeds().into_iter().filter(|v| v.abs() < 0.01);
+            for v in speeds {
+                let Ok(orbit) = near(&orbits, &closed, v, 0.0) else { continue };
+                let own = orbit.segments.last().expect("segments").end[1];
+                if (own - v).abs() > 1e-3 * v.abs() {
+                    continue;
+                }
+                match orbit.verdict {
+                    Verdict::Admissible => assert!(v > 0.0, "{w} {part} {v}"),
+                    Verdict::Virtual(_) => assert!(v < 0.0, "{w} {part} {v}: {:?}", orbit.verdict),
+                    Verdict::Undecided(_) => continue,
+                }
+                decided += 1;
+            }
+        }
+    }
+    assert!(decided >= 14, "{decided}");
 }

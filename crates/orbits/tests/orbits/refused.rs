@@ -1,7 +1,7 @@
 //! Input that has no orbit.
 
 use stickslip_expression::System;
-use stickslip_orbits::{BranchOptions, Guess, OrbitError, Orbits};
+use stickslip_orbits::{BranchOptions, Guess, OrbitError, Orbits, RegionOptions};
 
 use crate::impact;
 
@@ -194,4 +194,66 @@ fn strange_guesses_are_answered() {
     let orbits = Orbits::new(&still).expect("orbits");
     let said = orbits.settled(&[], &Guess::default(), 9.0).expect_err("no orbit").to_string();
     assert!(said.contains("its last 0 events do not repeat"), "{said}");
+}
+
+/// Every kind of input that has no orbit, and what is said of it.
+#[test]
+fn what_cannot_be_an_orbit_is_named() {
+    let said = |text: &str, itinerary: &[&str], durations: Option<&[f64]>| {
+        let system = System::parse(text).expect("a system");
+        let orbits = Orbits::new(&system).expect("orbits");
+        let guess = Guess { itinerary, durations, ..Guess::default() };
+        orbits.find(&system.values(), &guess).expect_err("no orbit")
+    };
+    // A condition that is zero throughout, by its formula or along the solution.
+    let zero = "parameter k = 0\nstate x = 0, y = 0\nx' = 1\ny' = 1\nwhen k*x > 0 \"still\"\n  \
+                x := 0\nwhen x > y \"same\"\n  x := 0\n  y := 0\nend = 9";
+    let still = said(zero, &["still"], Some(&[1.0]));
+    assert!(matches!(still, OrbitError::StillGuard { segment: 0, .. }), "{still}");
+    assert!(still.to_string().contains("rule `still` is zero or constant throughout"), "{still}");
+    let same = said(zero, &["same"], Some(&[1.0])).to_string();
+    assert!(same.starts_with("no orbit near the guess") && same.contains("segment 0"), "{same}");
+    // The rule acts at once, and the orbit is a point.
+    let point = "state x = 1\nx' = -1\nwhen x < 0 \"floor\"\n  x := 0\nend = 9";
+    let length = said(point, &["floor"], None);
+    assert!(matches!(length, OrbitError::NoLength { .. }), "{length}");
+    assert!(length.to_string().contains("which is a point"), "{length}");
+    // The flow of a guess grows beyond all numbers before its rule acts.
+    let far = "state x = 1\nx' = x^2\nwhen x < 0 \"below\"\n  x := 1\nend = 9";
+    let run = said(far, &["below"], None).to_string();
+    assert!(run.contains("segment 0"), "{run}");
+    let long = vec!["floor"; 10_000];
+    assert!(said(point, &long, None).to_string().contains("10000 is out of range"));
+}
+
+/// At a graze a multiplier is infinite: there are none, and the orbit is not stable.
+#[test]
+fn a_multiplier_at_infinity_is_none() {
+    let orbits = impact::orbits();
+    let closed = impact::Closed { w: 0.8, ..impact::Closed::EXAMPLE };
+    let closed = impact::Closed { a: closed.impedance(), ..closed };
+    let orbit = impact::near(&orbits, &closed, 0.0, 0.0).expect("an orbit");
+    assert!(orbit.segments.last().expect("segments").end[1].abs() < 1e-10);
+    assert_eq!(orbit.multipliers, None);
+    assert!(orbit.largest_multiplier() == f64::INFINITY && !orbit.is_stable());
+    assert!(matches!(orbit.verdict, stickslip_orbits::Verdict::Undecided(_)));
+}
+
+#[test]
+fn regions_refuse_what_they_cannot_follow() {
+    let orbits = impact::orbits();
+    let guess = Guess { itinerary: &["impact", "phase"], ..Guess::default() };
+    let orbit = orbits.find(&orbits.system().values(), &guess).expect("an orbit");
+    let refused = |parameters, window, options: &RegionOptions| {
+        orbits.regions(&orbit, parameters, window, options).expect_err("refused").to_string()
+    };
+    let (usual, window) = (RegionOptions::default(), [[0.5, 1.5], [0.5, 1.5]]);
+    assert!(refused([3, 3], window, &usual).contains("the places of two parameters"));
+    assert!(refused([3, 9], window, &usual).contains("the parameter = 9"));
+    assert!(refused([3, 4], [[2.0, 3.0], [0.5, 1.5]], &usual).contains("a = 1.0 is out of range"));
+    assert!(refused([3, 4], [[1.5, 0.5], [0.5, 1.5]], &usual).contains("LO:HI"));
+    let none = RegionOptions { cells: 0, ..usual };
+    assert!(refused([3, 4], window, &none).contains("cells = 0"));
+    let exact = RegionOptions { tolerance: 0.0, ..usual };
+    assert!(refused([3, 4], window, &exact).contains("tolerance"));
 }
