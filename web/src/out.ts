@@ -24,7 +24,7 @@ export interface Sources {
 export async function write(what: string, from: Sources): Promise<void> {
   const { plane } = from;
   const draw = (pen: Pen, width: number, height: number) =>
-    plane.drawWith(pen, width, height, false);
+    plane.drawWith(pen, width, height);
   switch (what) {
     case "plane-svg":
       return save("plane.svg", svg(...plane.extent, draw), "image/svg+xml");

@@ -1,6 +1,6 @@
 // The two spheres, drawn as they move through the contact.
 
-import { fit } from "./dom";
+import { fit, onceAFrame, sizeOf } from "./dom";
 import type { Course } from "./course";
 import { CanvasPen, type Path } from "./pen";
 import { theme } from "./theme";
@@ -135,8 +135,10 @@ export class Spheres {
     this.draw();
   }
 
-  draw(): void {
-    if (this.canvas.clientWidth === 0 || !this.contact) return;
+  readonly draw = onceAFrame(() => this.drawNow());
+
+  private drawNow(): void {
+    if (sizeOf(this.canvas)[0] === 0 || !this.contact) return;
     const [context, width, height] = fit(this.canvas);
     const pen = new CanvasPen(context);
     const colours = theme();

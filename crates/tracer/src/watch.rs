@@ -35,11 +35,12 @@ pub type Report<'a> = &'a (dyn Fn(Progress) + Sync);
 pub struct Watch<'a> {
     report: Report<'a>,
     cancelled: &'a (dyn Fn() -> bool + Sync),
+    curve: Option<&'a (dyn Fn(&[Point]) + Sync)>,
 }
 
 impl Watch<'static> {
     /// A watch that ignores all reports and never cancels.
-    pub const SILENT: Self = Self { report: &|_| {}, cancelled: &|| false };
+    pub const SILENT: Self = Self { report: &|_| {}, cancelled: &|| false, curve: None };
 }
 
 impl<'a> Watch<'a> {
@@ -54,6 +55,20 @@ impl<'a> Watch<'a> {
     #[must_use]
     pub fn cancelled_by(self, cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { cancelled, ..self }
+    }
+
+    /// The same watch, which is shown each curve when it has been followed, as points between which
+    /// straight lines look smooth. A later stage may cut the curve, or drop it.
+    #[must_use]
+    pub fn showing(self, curve: &'a (dyn Fn(&[Point]) + Sync)) -> Self {
+        Self { curve: Some(curve), ..self }
+    }
+
+    /// Shows a curve.
+    pub(crate) fn show(&self, points: impl FnOnce() -> Vec<Point>) {
+        if let Some(curve) = self.curve {
+            curve(&points());
+        }
     }
 
     /// The same watch without reports.
