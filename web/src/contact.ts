@@ -10,7 +10,8 @@ import { Spheres } from "./spheres";
 import { scene, STEEL, type Pinned, type State } from "./state";
 import type { Answer, Collision, Contact, Law } from "./types";
 
-const INTERVALS = 700;
+/** So many intervals a course has at least, on the screen and in a file. */
+const INTERVALS = { screen: 300, file: 1000 };
 /** So many phases of an itinerary are shown. */
 const MOST_PHASES = 60;
 const ANY = { low: 1, high: 2, log: false };
@@ -92,7 +93,7 @@ export class ContactView {
 
   private async compute(state: State, key: string): Promise<void> {
     this.computing = true;
-    const ask = { task: "contact" as const, intervals: INTERVALS };
+    const ask = { task: "contact" as const, intervals: INTERVALS.screen };
     const pinnedKey = JSON.stringify(state.pinned);
     const pinned = state.pinned;
     if (pinned && pinnedKey !== this.pinnedKey) {
@@ -109,6 +110,14 @@ export class ContactView {
     this.worked = ms;
     this.computing = false;
     if (this.wanted !== key) this.next();
+  }
+
+  /** The course of the contact of a state, as fine as a file has it. */
+  async fine(state: State): Promise<Course | undefined> {
+    const [x, y] = state.point;
+    const task = { task: "contact" as const, scene: scene(state, ANY, ANY), x, y };
+    const { answer } = await this.hand.do<Answer & Contact>({ ...task, intervals: INTERVALS.file });
+    return answer.error ? undefined : columns(answer);
   }
 
   /** Computes what was wanted while another contact was computed. */

@@ -24,10 +24,9 @@ port.onmessage = async ({
 }: MessageEvent<Message>) => {
   if ("packed" in data) {
     const text = atob(data.packed);
-    const part = unpack(
-      Uint8Array.from(text, (char) => char.charCodeAt(0)),
-      data.size,
-    );
+    const packed = new Uint8Array(text.length);
+    for (let index = 0; index < text.length; index++) packed[index] = text.charCodeAt(index);
+    const part = unpack(packed, data.size);
     port.postMessage({ part }, [part.buffer as ArrayBuffer]);
     return;
   }

@@ -238,7 +238,7 @@ ofPage("every file can be read", "", async (page) => {
     course[0],
     "time,compression,normal_velocity,normal_force,spring,tangential_force,velocity,sliding",
   );
-  assert.equal(course.length, 1 + 701 + 6);
+  assert.equal(course.length, 1 + 1001 + 6);
   assert.ok(
     course
       .slice(1)

@@ -70,13 +70,13 @@ pub extern "C" fn stride() -> usize {
     with(|state| state.stride())
 }
 
-/// Computes the course of the contact at a point of the present scene: `intervals` + 1 even moments
-/// and all switches, each [`course_stride`] numbers. Returns the number of moments; if it is 0, the
-/// text says why.
+/// Computes the course of the contact at a point of the present scene: `least` + 1 even moments, or
+/// more if the spring swings often, and all switches, each [`course_stride`] numbers. Returns the
+/// number of moments; if it is 0, the text says why.
 #[allow(unsafe_code, reason = "the name of an export")]
 #[unsafe(no_mangle)]
-pub extern "C" fn course(x: f64, y: f64, intervals: usize) -> usize {
-    with(|state| state.course([x, y], intervals))
+pub extern "C" fn course(x: f64, y: f64, least: usize) -> usize {
+    with(|state| state.course([x, y], least))
 }
 
 /// The number of numbers of each moment of a course: time, compression, its rate, normal force,

@@ -1,6 +1,7 @@
 //! What the page is told while it waits for an answer.
 
 #[cfg(target_family = "wasm")]
+#[allow(unsafe_code, reason = "the declaration of an import, which is safe to call")]
 mod import {
     unsafe extern "C" {
         /// Takes a curve of an atlas that is being traced, as `length` pairs of values of the axes.

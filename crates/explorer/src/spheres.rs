@@ -217,13 +217,16 @@ impl Spheres {
         Ok(Value::Object(document))
     }
 
-    /// Appends the course at a point to `numbers`; returns the number of its moments.
+    /// Appends the course at a point to `numbers`; returns the number of its moments. It has `least`
+    /// even intervals, or as many as each swing of the spring needs to look smooth.
     pub fn course(
         &self,
         point: [f64; 2],
-        intervals: usize,
+        least: usize,
         numbers: &mut Vec<f64>,
     ) -> Result<usize, String> {
+        const OF_A_SWING: f64 = 24.0;
+        const MOST: f64 = 2000.0;
         let contact = self.contact(point).map_err(|error| error.to_string())?;
         let history = if contact.obeys_paper() {
             History::exact(contact)
@@ -231,6 +234,9 @@ impl Spheres {
             Collider::default().history(contact)
         };
         let history = history.map_err(|error| error.to_string())?;
+        let swings = history.duration() * contact.kappa().sqrt() / std::f64::consts::TAU;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to MOST")]
+        let intervals = least.max((OF_A_SWING * swings).min(MOST) as usize);
         for Moment { snapshot, regime, side, .. } in history.moments(intervals) {
             let sliding = match (regime, side) {
                 (Regime::Stick, _) => 0.0,

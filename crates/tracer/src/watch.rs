@@ -28,6 +28,9 @@ pub enum Progress {
 /// Receives the reports of a computation.
 pub type Report<'a> = &'a (dyn Fn(Progress) + Sync);
 
+/// Receives curves, as points.
+type Show<'a> = &'a (dyn Fn(&[Point]) + Sync);
+
 /// A caller that watches a computation, and may cancel it.
 ///
 /// A report, or a reference to a closure that takes [`Progress`], is a watch that never cancels.
@@ -35,7 +38,7 @@ pub type Report<'a> = &'a (dyn Fn(Progress) + Sync);
 pub struct Watch<'a> {
     report: Report<'a>,
     cancelled: &'a (dyn Fn() -> bool + Sync),
-    curve: Option<&'a (dyn Fn(&[Point]) + Sync)>,
+    curve: Option<Show<'a>>,
 }
 
 impl Watch<'static> {
@@ -60,7 +63,7 @@ impl<'a> Watch<'a> {
     /// The same watch, which is shown each curve when it has been followed, as points between which
     /// straight lines look smooth. A later stage may cut the curve, or drop it.
     #[must_use]
-    pub fn showing(self, curve: &'a (dyn Fn(&[Point]) + Sync)) -> Self {
+    pub fn showing(self, curve: Show<'a>) -> Self {
         Self { curve: Some(curve), ..self }
     }
 
