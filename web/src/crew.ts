@@ -10,6 +10,7 @@ type Message =
   | ({ id: number; curve?: Float64Array; dead?: string } & Result<never>);
 
 interface Pending {
+  task: Task;
   resolve(result: Result<never>): void;
   timer: ReturnType<typeof setTimeout> | undefined;
   show: Show | undefined;
@@ -53,13 +54,17 @@ export class Hand {
   do<T = Answer>(task: Task, most?: number, show?: Show): Promise<Result<T>> {
     return new Promise((resolve) => {
       const id = this.next++;
-      const late = () => this.restart(`this takes longer than ${(most ?? 0) / 1000} s`);
+      const late = () => this.die(`this takes longer than ${(most ?? 0) / 1000} s`, id);
       const timer = most === undefined ? undefined : setTimeout(late, most);
-      this.pending.set(id, { resolve: resolve as Pending["resolve"], timer, show });
-      const worker = this.warm();
-      // Behind the module, which the worker gets first.
-      void this.module.then(() => worker.postMessage({ id, task }));
+      this.pending.set(id, { task, resolve: resolve as Pending["resolve"], timer, show });
+      this.post(id, task);
     });
+  }
+
+  private post(id: number, task: Task): void {
+    const worker = this.warm();
+    // Behind the module, which the worker gets first.
+    void this.module.then(() => worker.postMessage({ id, task }));
   }
 
   /** Unpacks a part of the module, for which nothing else has to be there. */
@@ -76,19 +81,31 @@ export class Hand {
   }
 
   /** Ends what the worker does; the next task starts another one. */
-  restart(reason = "cancelled"): void {
-    // The module is needed by all.
-    if (this.unpacked.length === 0) {
-      this.worker?.terminate();
-      this.worker = undefined;
-    }
+  restart(): void {
+    this.end();
+    for (const id of [...this.pending.keys()]) this.fail(id, "cancelled");
+  }
+
+  /** Ends the worker, and the task that it does; another one does the rest. */
+  private die(reason: string, id = Math.min(...this.pending.keys())): void {
+    this.end();
+    this.fail(id, reason);
+    for (const [other, { task }] of this.pending) this.post(other, task);
+  }
+
+  private end(): void {
     this.restarts += 1;
-    const given = [...this.pending.values()];
-    this.pending.clear();
-    for (const { resolve, timer } of given) {
-      clearTimeout(timer);
-      resolve({ answer: { error: reason } as never, ms: 0 });
-    }
+    // The module is needed by all.
+    if (this.unpacked.length > 0) return;
+    this.worker?.terminate();
+    this.worker = undefined;
+  }
+
+  private fail(id: number, error: string): void {
+    const pending = this.pending.get(id);
+    this.pending.delete(id);
+    clearTimeout(pending?.timer);
+    pending?.resolve({ answer: { error } as never, ms: 0 });
   }
 
   private start(): Worker {
@@ -109,7 +126,7 @@ export class Hand {
         return;
       }
       if (data.dead !== undefined) {
-        this.restart(`a worker ended (${data.dead}); it was started again`);
+        this.die(`a worker ended (${data.dead}); it was started again`, data.id);
         return;
       }
       this.pending.delete(data.id);
@@ -118,7 +135,7 @@ export class Hand {
     };
     worker.onerror = (event) => {
       event.preventDefault();
-      this.restart("a worker ended; it was started again");
+      this.die("a worker ended; it was started again");
     };
     void this.module.then((module) => worker.postMessage({ module }));
     return worker;

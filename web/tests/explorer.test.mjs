@@ -9,6 +9,12 @@ import { PAGE, downloaded, launch, mapped, settled, traced } from "./browser.mjs
 
 const data = (name) => JSON.parse(readFileSync(new URL(`data/${name}`, import.meta.url), "utf8"));
 
+/** A window of a ball that is soon traced. */
+const BALL = `tab=system&example=ball&across=e&up=g&most=6&${new URLSearchParams({
+  sx: '{"low":0.3,"high":0.7,"log":false}',
+  sy: '{"low":5,"high":15,"log":false}',
+})}`;
+
 let browser;
 before(async () => {
   browser = await launch();
@@ -265,7 +271,7 @@ ofPage("every file can be read", "", async (page) => {
   assert.equal(JSON.parse(await file("plane-json")).regions.length, 31);
 });
 
-ofPage("every file of a system can be read", "tab=system&example=ball", async (page) => {
+ofPage("every file of a system can be read", BALL, async (page) => {
   await page.waitForFunction(() => globalThis.explorer.system.run);
   await mapped(page);
   await traced(page);
@@ -345,7 +351,7 @@ ofPage(
 
 ofPage(
   "an own system is typed, with a mistake that is mended",
-  "tab=system&example=ball&across=e&up=g&sx=%7B%22low%22%3A0.3%2C%22high%22%3A0.7%2C%22log%22%3Afalse%7D&sy=%7B%22low%22%3A5%2C%22high%22%3A15%2C%22log%22%3Afalse%7D&most=6",
+  BALL,
   async (page) => {
     await page.waitForFunction(() => globalThis.explorer.system.run?.events.length > 3);
     await traced(page);
@@ -567,64 +573,59 @@ ofPage("only what changes is drawn while a point is dragged", "", async (page) =
 ofPage("every law is computed, and its energies add up", "", async (page) => {
   const names = await page.locator("#law option").evaluateAll((all) => all.map((it) => it.value));
   assert.ok(names.length > 30 && names.includes("walton-braun"), String(names));
-  for (const name of names.flatMap((it) => [it, `${it}+limit_damping`])) {
-    for (const tangential of [0, 0.5]) {
+  let refusals = 0;
+  for (const name of [...names, "gran/hooke/history+limit_damping", "granular/jkr"]) {
+    for (const tangential of [0.5, 0]) {
       const found = await page.evaluate(
         async ([law, tangential]) => {
           const { store, contact } = globalThis.explorer;
-          const point = [4 + Math.random() / 1e6, 0.5];
-          store.change({ law, damping: 0.2, tangential, point, boundaries: false });
-          for (;;) {
-            await new Promise((resolve) => setTimeout(resolve, 5));
-            const refused = document.querySelector("#facts .error")?.textContent;
-            if (refused) {
-              store.change({ law: "paper", tangential: 0 });
-              while (document.querySelector("#facts .error"))
-                await new Promise((resolve) => setTimeout(resolve, 5));
-              return { refused };
-            }
-            if (contact.contact?.document.parameters.kappa === point[0]) break;
-          }
-          await new Promise((resolve) => setTimeout(resolve, 20));
-          const curves = contact.chart.panels[3].curves;
-          const lost = Array.from(curves.find((it) => it.name === "lost").values);
-          const { energy_lost } = contact.contact.document;
-          const held = ["compression", "spring"].map((name) =>
-            Array.from(curves.find((it) => it.name === name).values).at(-1),
-          );
+          const soon = () => new Promise((resolve) => requestAnimationFrame(resolve));
+          const refusal = () => document.querySelector("#facts .error")?.textContent;
+          store.change({ law: "paper", tangential: 0, point: [3, 0.5] });
+          while (refusal() || contact.contact?.document.parameters.kappa !== 3) await soon();
+          store.change({ law, damping: 0.2, tangential, point: [4, 0.5], boundaries: false });
+          while (!refusal() && contact.contact?.document.parameters.kappa !== 4) await soon();
+          if (refusal()) return { refused: refusal() };
+          const values = (name) =>
+            Array.from(contact.chart.panels[3].curves.find((it) => it.name === name).values);
+          const [lost, ...held] = ["lost", "compression", "spring"].map(values);
           const drops = lost.slice(1).map((it, index) => lost[index] - it);
-          return { end: lost.at(-1) + held[0] + held[1] - energy_lost, drop: Math.max(...drops) };
+          return {
+            // What is held at the end is lost with the contact.
+            end: lost.at(-1) + held[0].at(-1) + held[1].at(-1) - contact.contact.document.energy_lost,
+            drop: Math.max(...drops),
+          };
         },
         [name, tangential],
       );
       if (found.refused) {
-        assert.match(found.refused, /expected|law/, name);
+        refusals += 1;
+        assert.match(found.refused, /expected|adhesion/, name);
         continue;
       }
       assert.ok(Math.abs(found.end) < 1e-6, `${name} ${JSON.stringify(found)}`);
       const told = await page.textContent("#equations");
-      // What a spring that changes with the overlap does with its energy is said by the law.
+      // Other springs may create energy, which the law says.
       if (/conserves energy/.test(told))
         assert.ok(found.drop < 1e-6, `${name} ${tangential} ${JSON.stringify(found)}`);
+      break;
     }
   }
+  assert.ok(refusals < 12, String(refusals));
 });
 
 ofPage(
-  "curves of a general law come one by one, and the contact is not kept waiting",
-  `law=${encodeURIComponent("gran/hertz/history")}&damping=0.2&tangential=0.5&${[
-    ["x", '{"low":4,"high":5,"log":true}'],
-    ["y", '{"low":0.8,"high":0.9,"log":false}'],
-    ["point", "[4.5,0.85]"],
-  ]
-    .map(([key, value]) => `${key}=${encodeURIComponent(value)}`)
-    .join("&")}`,
+  "curves of a slow plane come one by one, and dragging goes on meanwhile",
+  BALL,
   async (page) => {
     await page.waitForFunction(() => globalThis.explorer.plane.found.length > 0);
     assert.match(await page.textContent("#status"), /tracing boundaries … \d/);
     assert.equal(await page.evaluate(() => globalThis.explorer.plane.atlas), undefined);
-    await page.evaluate(() => globalThis.explorer.store.change({ point: [4.25, 0.86] }));
-    await settled(page);
+    await page.evaluate(() => globalThis.explorer.store.change({ set: { e: 0.5, g: 8 } }));
+    // The first bounce is after √(2 height/g).
+    await page.waitForFunction(
+      () => Math.abs(globalThis.explorer.system.run.events[0].time - Math.sqrt(9.81 / 8)) < 1e-9,
+    );
     await traced(page);
     assert.equal(await page.evaluate(() => globalThis.explorer.plane.found.length), 0);
   },
