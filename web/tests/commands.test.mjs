@@ -128,7 +128,7 @@ test("commands of two spheres", { skip }, async () => {
   const native = JSON.parse(run(collide, "--format", "json"));
   assert.equal(native.itinerary, own.itinerary, collide);
   if (python) {
-    const found = inPython(impact, "found.eps_t");
+    const found = inPython(impact, "float(found.eps_t)");
     assert.ok(Math.abs(found - own.eps_t) < 1e-9, `${impact} ${found} ${own.eps_t}`);
   }
   assert.deepEqual(said, []);

@@ -48,10 +48,12 @@ use crate::window::{Point, Window};
 ///
 /// // This one shows each curve as soon as it has been followed.
 /// let shown = AtomicUsize::new(0);
-/// let show = |points: &[Point]| { shown.fetch_add(points.len(), Relaxed); };
+/// let show = |points: &[Point]| {
+///     shown.fetch_add(usize::from(points.len() > 1), Relaxed);
+/// };
 /// let watch = Watch::SILENT.showing(&show);
 /// Surveyor { watch, ..Surveyor::default() }.atlas(&Parabola, &window)?;
-/// assert!(shown.load(Relaxed) > atlas.plane.curves()[0].nodes.len());
+/// assert!(shown.load(Relaxed) >= atlas.plane.curves().len());
 ///
 /// // This one is cancelled at once, and says so.
 /// let watch = Watch::SILENT.cancelled_by(&|| true);
