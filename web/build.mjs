@@ -68,10 +68,16 @@ function stripped(bytes) {
   return Buffer.concat(parts);
 }
 
-/** A file of LZMA, which src/unpack.ts reads. */
-function packed(bytes) {
+/** The module in parts, each a file of LZMA, which src/unpack.ts reads: two workers unpack them. */
+function packed(module) {
+  const middle = module.length >> 1;
+  const parts = [module.subarray(0, middle), module.subarray(middle)];
   const options = ["--format=lzma", "-9e", "--stdout"];
-  return execFileSync("xz", options, { input: bytes, maxBuffer: 1e9 });
+  const pack = (bytes) => execFileSync("xz", options, { input: bytes, maxBuffer: 1e9 });
+  return {
+    SIZE: parts.map((part) => part.length).join(),
+    WASM: parts.map((part) => pack(part).toString("base64")).join("\n"),
+  };
 }
 
 async function bundle(entry) {
@@ -101,8 +107,7 @@ async function page() {
   const module = stripped(readFileSync(join(target, TRIPLE, "web", "stickslip_explorer.wasm")));
   const parts = {
     STYLE: await css(),
-    SIZE: String(module.length),
-    WASM: packed(module).toString("base64"),
+    ...packed(module),
     WORKER: await bundle("worker.ts"),
     MAIN: await bundle("main.ts"),
   };

@@ -1,7 +1,7 @@
 // Panels of curves over time, one above the other, with one axis of time.
 
 import { fixed, short } from "./number";
-import type { Path, Pen } from "./pen";
+import type { Pen, Track } from "./pen";
 import { part, ticks } from "./scale";
 import { theme } from "./theme";
 import type { Axis } from "./types";
@@ -11,9 +11,9 @@ export interface Curve {
   colour: string;
   width?: number;
   dash?: number[];
-  /** Values at the times of the chart, or pairs of own times and values. */
-  values?: ArrayLike<number>;
-  path?: [number, number][];
+  /** Values at the times of the chart, or at own times. */
+  values: ArrayLike<number>;
+  times?: ArrayLike<number>;
   /** Whether its value is told under the pointer. */
   quiet?: boolean;
 }
@@ -86,7 +86,7 @@ export function drawChart(
         );
       for (const curve of panel.curves) {
         const stroke = { colour: curve.colour, width: curve.width ?? 1.8, dash: curve.dash ?? [] };
-        pen.line(pathOf(curve, chart, x, y), stroke);
+        pen.curve(trackOf(curve, chart, x, y), stroke);
       }
     });
     pen.line(
@@ -137,15 +137,18 @@ export function timeAt(chart: Chart, width: number, at: number): number {
   return chart.start + share * (chart.end - chart.start);
 }
 
-function pathOf(
-  curve: Curve,
+function trackOf(
+  { times = [], values }: Curve,
   chart: Chart,
   x: (at: number) => number,
   y: (at: number) => number,
-): Path {
-  if (curve.path) return curve.path.map(([at, value]) => [x(at), y(value)]);
-  const { values = [] } = curve;
-  return Array.from(chart.times, (at, index) => [x(at), y(values[index] ?? NaN)]);
+): Track {
+  const own = times.length ? times : chart.times;
+  return {
+    length: own.length,
+    x: (index) => x(own[index] as number),
+    y: (index) => y(values[index] ?? NaN),
+  };
 }
 
 /** The title of a panel, and the names of its curves, with values under the pointer. */
@@ -187,8 +190,7 @@ function caption(
 
 /** The value of a curve at a time. */
 export function valueAt(curve: Curve, chart: Chart, time: number): number {
-  const times = curve.path ? curve.path.map(([at]) => at) : chart.times;
-  const values = curve.path ? curve.path.map(([, value]) => value) : (curve.values ?? []);
+  const { times = chart.times, values } = curve;
   let [low, high] = [0, times.length - 1];
   if (high < 0 || time < (times[0] as number) || time > (times[high] as number)) return NaN;
   while (high - low > 1) {

@@ -1,6 +1,6 @@
 // The command line and the Python lines that compute what the page shows.
 
-import type { State } from "./state";
+import type { Ball, State } from "./state";
 import type { Axis, Collision } from "./types";
 
 /** The least part of an axis' upper end that is traced, where it begins at 0. */
@@ -28,28 +28,24 @@ export function ofContact(state: State, { parameters }: Collision): Lines {
   };
 }
 
+/** The impact of two spheres, in SI units. */
+export function ofImpact(state: State): Lines {
+  const { tangential_stiffness_kg_per_s2, damping_time_s, other } = state.bodies;
+  const sphere = ({ radius_m, young_modulus_pa, poisson_ratio, density_kg_per_m3 }: Ball) =>
+    `Sphere(${radius_m}, Material(young_modulus_pa=${young_modulus_pa}, poisson_ratio=${poisson_ratio}, density_kg_per_m3=${density_kg_per_m3}))`;
+  const python = [
+    "from stickslip import Bodies, Material, Sphere, Surface, impact",
+    `one = ${sphere(state.bodies)}`,
+    `other = ${other ? sphere(other) : "one"}`,
+    `surface = Surface(${state.mu}, ${tangential_stiffness_kg_per_s2}, ${damping_time_s})`,
+    `found = impact(Bodies(one, other, surface), normal_m_per_s=${state.point[0]}, tangential_m_per_s=${state.point[1]})`,
+    "print(found.eps_t)",
+  ];
+  return { shell: "", python: python.join("\n") };
+}
+
 /** The boundaries of a window. */
 export function ofWindow(state: State): Lines {
-  if (state.axes === "velocities") {
-    const {
-      radius_m,
-      young_modulus_pa,
-      poisson_ratio,
-      density_kg_per_m3,
-      tangential_stiffness_kg_per_s2,
-      damping_time_s,
-    } = state.bodies;
-    const python = [
-      "import numpy as np",
-      "from stickslip import Bodies, Material, Sphere, Surface, impact",
-      `material = Material(young_modulus_pa=${young_modulus_pa}, poisson_ratio=${poisson_ratio}, density_kg_per_m3=${density_kg_per_m3})`,
-      `surface = Surface(${state.mu}, ${tangential_stiffness_kg_per_s2}, ${damping_time_s})`,
-      `bodies = Bodies(Sphere(${radius_m}, material), Sphere(${radius_m}, material), surface)`,
-      `found = impact(bodies, normal_m_per_s=${state.point[0]}, tangential_m_per_s=${state.point[1]})`,
-      "print(found.eps_t)",
-    ];
-    return { shell: "", python: python.join("\n") };
-  }
   const factor = state.axes === "axis-ratio" ? 1 / state.alpha : 1;
   const [kappa, other] = [ends(state.x).map((it) => it * factor), ends(state.y)];
   const ratio = state.axes !== "kappa-psi";

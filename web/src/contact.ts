@@ -3,14 +3,15 @@
 import { described, drawChart, timeAt, type Chart } from "./chart";
 import { chartOf, columns, type Course } from "./course";
 import type { Hand } from "./crew";
-import { byId, fit, make, onceAFrame } from "./dom";
+import { become, byId, fit, frame, make, onceAFrame, sizeOf } from "./dom";
 import { fixed, short } from "./number";
 import { CanvasPen } from "./pen";
 import { Spheres } from "./spheres";
 import { scene, STEEL, type Pinned, type State } from "./state";
 import type { Answer, Collision, Contact, Law } from "./types";
 
-const INTERVALS = 700;
+/** So many intervals a course has at least, on the screen and in a file. */
+const INTERVALS = { screen: 300, file: 1000 };
 /** So many phases of an itinerary are shown. */
 const MOST_PHASES = 60;
 const ANY = { low: 1, high: 2, log: false };
@@ -27,8 +28,11 @@ export class ContactView {
   private readonly spheres: Spheres;
   private cursor: number | undefined;
   private readonly draw = onceAFrame(() => this.drawNow());
-  /** Milliseconds of the worker for the last contact, and of drawing it. */
-  times = { worker: 0, draw: 0 };
+  /** Milliseconds of the worker for the last contact, and of the page for the last frame. */
+  get times(): { worker: number; frame: number } {
+    return { worker: this.worked, frame: frame.work };
+  }
+  private worked = 0;
 
   constructor(
     private readonly hand: Hand,
@@ -89,7 +93,7 @@ export class ContactView {
 
   private async compute(state: State, key: string): Promise<void> {
     this.computing = true;
-    const ask = { task: "contact" as const, intervals: INTERVALS };
+    const ask = { task: "contact" as const, intervals: INTERVALS.screen };
     const pinnedKey = JSON.stringify(state.pinned);
     const pinned = state.pinned;
     if (pinned && pinnedKey !== this.pinnedKey) {
@@ -101,12 +105,19 @@ export class ContactView {
     this.pinnedKey = pinnedKey;
     const of = { ...ask, scene: scene(state, ANY, ANY), x: state.point[0], y: state.point[1] };
     const { answer, ms } = await this.hand.do<Answer & Contact>(of, 5000);
-    const begun = performance.now();
     if (answer.error) this.refuse(answer.error);
     else this.take(state, answer);
-    this.times = { worker: ms, draw: performance.now() - begun };
+    this.worked = ms;
     this.computing = false;
     if (this.wanted !== key) this.next();
+  }
+
+  /** The course of the contact of a state, as fine as a file has it. */
+  async fine(state: State): Promise<Course | undefined> {
+    const [x, y] = state.point;
+    const task = { task: "contact" as const, scene: scene(state, ANY, ANY), x, y };
+    const { answer } = await this.hand.do<Answer & Contact>({ ...task, intervals: INTERVALS.file });
+    return answer.error ? undefined : columns(answer);
   }
 
   /** Computes what was wanted while another contact was computed. */
@@ -117,8 +128,8 @@ export class ContactView {
 
   private refuse(error: string): void {
     this.contact = this.course = this.chart = undefined;
-    byId("facts").replaceChildren(make("p", { class: "error", role: "alert" }, error));
-    byId("switches").replaceChildren();
+    become(byId("facts"), [make("p", { class: "error", role: "alert" }, error)]);
+    become(byId("switches"), []);
     this.draw();
     this.changed();
   }
@@ -127,27 +138,35 @@ export class ContactView {
     this.contact = contact;
     this.course = columns(contact);
     const law = this.law(state);
-    const factor = (state.mu * state.mu) / state.alpha;
+    const factor = factorOf(state);
     const other = state.pinned;
     const pinned =
       other && this.pinned
         ? {
             contact: this.pinned,
             law: this.law(other),
-            factor: (other.mu * other.mu) / other.alpha,
+            factor: factorOf(other),
           }
         : undefined;
     this.chart = chartOf(contact, { law, factor, ...(pinned ? { pinned } : {}) });
-    this.canvas.setAttribute("aria-label", `Course of the contact. ${described(this.chart)}`);
     this.spheres.show(contact, this.course, state.mu, state.alpha);
-    byId("facts").replaceChildren(...facts(contact.document, this.pinned?.document));
-    byId("switches").replaceChildren(switchTable(contact.document));
-    this.drawNow();
+    this.tell();
+    this.draw();
     this.changed();
   }
 
+  /** Results and switches in words, and what a screen reader is told: once a frame at the most. */
+  private readonly tell = onceAFrame(() => {
+    const { contact, chart } = this;
+    if (!contact || !chart) return;
+    become(byId("facts"), facts(contact.document, this.pinned?.document));
+    become(byId("switches"), [switchTable(contact.document)]);
+    this.canvas.setAttribute("aria-label", `Course of the contact. ${described(chart)}`);
+  });
+
   private law(of: State | Pinned): Law | undefined {
-    return this.laws().find((law) => law.name === (of.axes === "velocities" ? "paper" : of.law));
+    const name = of.axes === "velocities" ? "paper" : of.law.replace("+limit_damping", "");
+    return this.laws().find((law) => law.name === name);
   }
 
   redraw(): void {
@@ -157,10 +176,16 @@ export class ContactView {
   }
 
   private drawNow(): void {
-    if (this.canvas.clientWidth === 0) return;
+    if (sizeOf(this.canvas)[0] === 0) return;
     const [context, width, height] = fit(this.canvas);
     if (this.chart) drawChart(new CanvasPen(context), this.chart, width, height, this.cursor);
   }
+}
+
+/** The factor that makes tangential energies comparable with normal ones. Without friction, ψ is
+ * (gₜ/gₙ)·α. */
+function factorOf({ mu, alpha }: State | Pinned): number {
+  return (mu || 1) ** 2 / alpha;
 }
 
 /** The part of a state that makes a contact. */

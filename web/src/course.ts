@@ -20,8 +20,11 @@ export type Course = Record<(typeof NAMES)[number], Float64Array>;
 /** The columns of a course. */
 export function columns({ course, stride }: Contact): Course {
   const count = course.length / stride;
-  const column = (place: number) =>
-    Float64Array.from({ length: count }, (_, index) => course[index * stride + place] as number);
+  const column = (place: number) => {
+    const values = new Float64Array(count);
+    for (let index = 0; index < count; index++) values[index] = course[index * stride + place]!;
+    return values;
+  };
   return Object.fromEntries(NAMES.map((name, place) => [name, column(place)])) as Course;
 }
 
@@ -34,6 +37,8 @@ export interface Energies {
   lost: Float64Array;
 }
 
+type Numbers = Partial<Record<string, number>>;
+
 /** The energies over time: `factor` is μ²/α, which makes the tangential ones comparable. */
 export function energies(
   contact: Contact,
@@ -41,20 +46,39 @@ export function energies(
   law: Law | undefined,
   factor: number,
 ): Energies {
-  const { kappa, psi } = contact.document.parameters;
+  const { kappa, psi, damping, tangential_damping = 0 } = contact.document.parameters;
   const all = 0.5 * (1 + factor * psi * psi);
   const each = (of: (index: number) => number) => course.time.map((_, index) => of(index) / all);
   const normal = each((index) => 0.5 * course.normal_velocity[index]! ** 2);
   const tangential = each((index) => 0.5 * factor * course.velocity[index]! ** 2);
-  const hertz = law?.hertz ?? true;
+  const own = law?.law;
+  const overlap = (index: number) => Math.max(0, course.compression[index]!);
   const compression = each((index) => {
-    const x = Math.max(0, course.compression[index]!);
-    return hertz ? 0.4 * x ** 2.5 : 0.5 * x * x;
+    const x = overlap(index);
+    const stiffened: Numbers = { hysteretic: 1 + damping, hardening: 1 + damping * x };
+    const stiffening = stiffened[own?.damping ?? ""];
+    // A hysteretic force gives back only what it holds where it falls, with a higher stiffness.
+    if (stiffening) {
+      const stiffness = course.normal_velocity[index]! > 0 ? stiffening : 1 + damping;
+      return course.normal_force[index]! ** 2 / (2 * stiffness);
+    }
+    return own?.normal === "linear" ? 0.5 * x * x : 0.4 * x ** 2.5;
   });
+  // The dashpot of a law is proportional to this power of the overlap.
+  const powers: Numbers = { linear: 0, viscoelastic: 0.5, tsuji: 0.25 };
+  const viscosity = powers[own?.damping ?? ""];
   const spring = each((index) => {
-    const held = 0.5 * factor * kappa * course.spring[index]! ** 2;
-    const x = course.compression[index]!;
-    return law?.mindlin ? (x > 0 ? held / Math.sqrt(x) : 0) : held;
+    if (own?.history === "none") return 0;
+    const x = overlap(index);
+    // What is left of the force without that of the dashpot.
+    const beside = own?.coulomb_test === "spring" && course.sliding[index] !== 0;
+    const dashpot =
+      viscosity === undefined || beside
+        ? 0
+        : tangential_damping * damping * x ** viscosity * course.velocity[index]!;
+    const force = kappa * course.spring[index]! - dashpot;
+    const stiffness = own?.tangential === "mindlin" ? kappa * Math.sqrt(x) : kappa;
+    return stiffness > 0 ? (0.5 * factor * force * force) / stiffness : 0;
   });
   const lost = course.time.map(
     (_, index) => 1 - normal[index]! - tangential[index]! - compression[index]! - spring[index]!,
@@ -86,7 +110,8 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
             width: 1.3,
             dash: [5, 3],
             quiet: true,
-            path: Array.from(values, (value, index) => [other.course.time[index]!, value]),
+            times: other.course.time,
+            values,
           },
         ]
       : [];

@@ -2,24 +2,37 @@
 
 import { byId } from "./dom";
 import type { Answer, MapPart, Task } from "./types";
-import { unpack } from "./unpack";
 
 type Result<T> = { answer: T; ms: number };
 
+type Message =
+  | { part: Uint8Array }
+  | ({ id: number; curve?: Float64Array; dead?: string } & Result<never>);
+
 interface Pending {
+  task: Task;
   resolve(result: Result<never>): void;
   timer: ReturnType<typeof setTimeout> | undefined;
+  show: Show | undefined;
 }
+
+/** Takes a curve of an atlas before the answer, as pairs of values. */
+type Show = (curve: Float64Array) => void;
 
 let code: string | undefined;
 
-/** The module, compiled from the text that the page holds. */
-export function compiled(): Promise<WebAssembly.Module> {
+/** The module, compiled from the text that the page holds in several parts: workers unpack them at the
+ * same time. */
+export async function compiled(hands: Hand[]): Promise<WebAssembly.Module> {
   const holder = byId("wasm");
-  const text = atob(holder.textContent ?? "");
-  const packed = new Uint8Array(text.length);
-  for (let index = 0; index < text.length; index++) packed[index] = text.charCodeAt(index);
-  return WebAssembly.compile(unpack(packed, Number(holder.dataset.size)) as BufferSource);
+  const sizes = (holder.dataset.size ?? "").split(",").map(Number);
+  const parts = (holder.textContent ?? "").trim().split("\n");
+  const found = await Promise.all(
+    parts.map((text, place) => hands[place % hands.length]!.unpack(text, sizes[place] ?? 0)),
+  );
+  const module = new Uint8Array(found.reduce((sum, part) => sum + part.length, 0));
+  found.reduce((at, part) => (module.set(part, at), at + part.length), 0);
+  return WebAssembly.compile(module);
 }
 
 /** One worker, which starts with its first task. */
@@ -27,6 +40,7 @@ export class Hand {
   private worker: Worker | undefined;
   private readonly pending = new Map<number, Pending>();
   private next = 0;
+  private readonly unpacked: ((part: Uint8Array) => void)[] = [];
   /** How often it was started again. */
   restarts = 0;
 
@@ -37,15 +51,27 @@ export class Hand {
   }
 
   /** Does a task. The answer has an error if the worker dies, or takes longer than `most` ms. */
-  do<T = Answer>(task: Task, most?: number): Promise<Result<T>> {
+  do<T = Answer>(task: Task, most?: number, show?: Show): Promise<Result<T>> {
     return new Promise((resolve) => {
       const id = this.next++;
-      const late = () => this.restart(`this takes longer than ${(most ?? 0) / 1000} s`);
+      const late = () => this.die(`this takes longer than ${(most ?? 0) / 1000} s`, id);
       const timer = most === undefined ? undefined : setTimeout(late, most);
-      this.pending.set(id, { resolve: resolve as Pending["resolve"], timer });
-      const worker = this.warm();
-      // Behind the module, which the worker gets first.
-      void this.module.then(() => worker.postMessage({ id, task }));
+      this.pending.set(id, { task, resolve: resolve as Pending["resolve"], timer, show });
+      this.post(id, task);
+    });
+  }
+
+  private post(id: number, task: Task): void {
+    const worker = this.warm();
+    // Behind the module, which the worker gets first.
+    void this.module.then(() => worker.postMessage({ id, task }));
+  }
+
+  /** Unpacks a part of the module, for which nothing else has to be there. */
+  unpack(packed: string, size: number): Promise<Uint8Array> {
+    return new Promise((resolve) => {
+      this.unpacked.push(resolve);
+      this.warm().postMessage({ packed, size });
     });
   }
 
@@ -55,21 +81,31 @@ export class Hand {
   }
 
   /** Ends what the worker does; the next task starts another one. */
-  restart(reason = "cancelled"): void {
-    this.worker?.terminate();
-    this.worker = undefined;
-    this.restarts += 1;
-    const given = [...this.pending.values()];
-    this.pending.clear();
-    for (const { resolve, timer } of given) {
-      clearTimeout(timer);
-      resolve({ answer: { error: reason } as never, ms: 0 });
-    }
+  restart(): void {
+    this.end();
+    for (const id of [...this.pending.keys()]) this.fail(id, "cancelled");
   }
 
-  /** Ends the worker from outside, as a crash would. For tests. */
-  crash(): void {
-    this.worker?.dispatchEvent(new ErrorEvent("error", { message: "crash", cancelable: true }));
+  /** Ends the worker, and the task that it does; another one does the rest. */
+  private die(reason: string, id = Math.min(...this.pending.keys())): void {
+    this.end();
+    this.fail(id, reason);
+    for (const [other, { task }] of this.pending) this.post(other, task);
+  }
+
+  private end(): void {
+    this.restarts += 1;
+    // The module is needed by all.
+    if (this.unpacked.length > 0) return;
+    this.worker?.terminate();
+    this.worker = undefined;
+  }
+
+  private fail(id: number, error: string): void {
+    const pending = this.pending.get(id);
+    this.pending.delete(id);
+    clearTimeout(pending?.timer);
+    pending?.resolve({ answer: { error } as never, ms: 0 });
   }
 
   private start(): Worker {
@@ -77,15 +113,29 @@ export class Hand {
       new Blob([byId("worker").textContent ?? ""], { type: "text/javascript" }),
     );
     const worker = new Worker(code);
-    worker.onmessage = ({ data }: MessageEvent<{ id: number } & Result<never>>) => {
+    worker.onmessage = ({
+      data,
+    }: MessageEvent<Message>) => {
+      if ("part" in data) {
+        this.unpacked.shift()?.(data.part);
+        return;
+      }
       const pending = this.pending.get(data.id);
+      if (data.curve) {
+        pending?.show?.(data.curve);
+        return;
+      }
+      if (data.dead !== undefined) {
+        this.die(`a worker ended (${data.dead}); it was started again`, data.id);
+        return;
+      }
       this.pending.delete(data.id);
       clearTimeout(pending?.timer);
       pending?.resolve({ answer: data.answer, ms: data.ms });
     };
     worker.onerror = (event) => {
       event.preventDefault();
-      this.restart("a worker ended; it was started again");
+      this.die("a worker ended; it was started again");
     };
     void this.module.then((module) => worker.postMessage({ module }));
     return worker;
@@ -97,6 +147,8 @@ export interface Band {
   task: Extract<Task, { task: "map" }>;
   /** The size of its points in those of the finished map. */
   block: number;
+  /** Whether a worker has failed at it. */
+  again?: boolean;
 }
 
 /** Workers that compute the bands of a map, coarse ones first. Only the newest map counts. */
@@ -129,9 +181,12 @@ export class Crew {
     const { generation } = this;
     const { answer } = await hand.do<MapPart & Answer>(band.task, 60_000);
     if (generation === this.generation) {
-      if (answer.counts) this.take(band, answer);
-      this.left -= 1;
-      if (this.left === 0) this.finished();
+      if (!answer.counts && !band.again) this.queue.unshift({ ...band, again: true });
+      else {
+        if (answer.counts) this.take(band, answer);
+        this.left -= 1;
+        if (this.left === 0) this.finished();
+      }
     }
     void this.feed(hand);
   }

@@ -34,23 +34,78 @@ export function save(name: string, content: Blob | string, type = "text/plain"):
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Calls a function once a frame, however often it is asked for. */
+/** Makes the children of a box those nodes, and changes only what differs. Listeners of new nodes are
+ * lost where an old node is kept. */
+export function become(box: Element, nodes: Node[]): void {
+  nodes.forEach((node, index) => {
+    const old = box.childNodes[index];
+    if (!old) box.append(node);
+    else if (!merged(old, node)) old.replaceWith(node);
+  });
+  while (box.childNodes.length > nodes.length) box.lastChild?.remove();
+}
+
+/** Makes an old node like a new one, if they are of one kind. */
+function merged(old: Node, node: Node): boolean {
+  if (old.nodeName !== node.nodeName) return false;
+  if (!(old instanceof Element && node instanceof Element)) {
+    if (old.nodeValue !== node.nodeValue) old.nodeValue = node.nodeValue;
+    return true;
+  }
+  for (const { name, value } of node.attributes)
+    if (old.getAttribute(name) !== value) old.setAttribute(name, value);
+  for (const name of old.getAttributeNames())
+    if (!node.hasAttribute(name)) old.removeAttribute(name);
+  become(old, [...node.childNodes]);
+  return true;
+}
+
+const due = new Set<() => void>();
+/** Milliseconds that the last frame took. */
+export const frame = { work: 0 };
+
+/** Calls a function once a frame, however often it is asked for. What a frame asks for is done in the
+ * same frame. */
 export function onceAFrame(act: () => void): () => void {
-  let asked = false;
   return () => {
-    if (asked) return;
-    asked = true;
-    requestAnimationFrame(() => {
-      asked = false;
-      act();
-    });
+    if (due.size === 0) requestAnimationFrame(work);
+    due.add(act);
   };
+}
+
+function work(): void {
+  const begun = performance.now();
+  // A set also gives what is added meanwhile.
+  for (const act of due) {
+    try {
+      act();
+    } finally {
+      due.delete(act);
+    }
+  }
+  frame.work = performance.now() - begun;
+}
+
+const sizes = new WeakMap<Element, [number, number]>();
+const measure = (element: Element): [number, number] => {
+  const size: [number, number] = [element.clientWidth, element.clientHeight];
+  sizes.set(element, size);
+  return size;
+};
+const watcher = new ResizeObserver((entries) => entries.forEach(({ target }) => measure(target)));
+
+/** The size of a box in pixels. It is measured when it changes, since asking makes a layout. */
+export function sizeOf(element: Element): [number, number] {
+  const known = sizes.get(element);
+  if (known) return known;
+  watcher.observe(element);
+  return measure(element);
 }
 
 /** Makes a canvas as large as its box, in device pixels; returns its context and size. */
 export function fit(canvas: HTMLCanvasElement): [CanvasRenderingContext2D, number, number] {
   const ratio = window.devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const [width, height] = sizeOf(canvas);
   const [across, down] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== across || canvas.height !== down) {
     canvas.width = across;

@@ -29,9 +29,18 @@ export class Engine {
 
   private constructor(private readonly exports: Exports) {}
 
-  static async start(module: WebAssembly.Module): Promise<Engine> {
-    const instance = await WebAssembly.instantiate(module, {});
-    return new Engine(instance.exports as unknown as Exports);
+  /** `show` takes each curve of an atlas that is being traced, as pairs of values. */
+  static async start(
+    module: WebAssembly.Module,
+    show: (curve: Float64Array) => void,
+  ): Promise<Engine> {
+    let exports: Exports | undefined;
+    const curve = (address: number, length: number) => {
+      if (exports) show(new Float64Array(exports.memory.buffer, address, 2 * length).slice());
+    };
+    const instance = await WebAssembly.instantiate(module, { env: { curve } });
+    exports = instance.exports as unknown as Exports;
+    return new Engine(exports);
   }
 
   /** Answers a request that needs no scene. */

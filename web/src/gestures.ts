@@ -7,8 +7,8 @@ export interface Gestures {
   point(x: number, y: number): void;
   /** The window is moved by pixels, and zoomed about a place. */
   move(dx: number, dy: number, zoom: number, x: number, y: number): void;
-  /** The pointer is over a place, or nowhere. */
-  hover(place: [number, number] | undefined): void;
+  /** The pointer is over a place, perhaps while it drags the point, or nowhere. */
+  hover(place: [number, number] | undefined, dragging?: boolean): void;
   /** The point is moved by steps. */
   step(dx: number, dy: number, fine: boolean): void;
 }
@@ -59,7 +59,7 @@ export function listen(canvas: HTMLElement, gestures: Gestures): void {
     pressed.set(event.pointerId, at);
     if (grabbed === "point") {
       gestures.point(...at);
-      gestures.hover(at);
+      gestures.hover(at, true);
     } else gestures.move(at[0] - last[0], at[1] - last[1], 1, ...at);
   });
   const release = (event: PointerEvent) => {

@@ -35,7 +35,9 @@ function read(key: keyof State, text: string): Json {
   const model: Json = DEFAULT[key];
   if (typeof model === "string" || key === "text") return text;
   try {
-    const value: Json = JSON.parse(text);
+    const given: Json = JSON.parse(text);
+    // A link may leave out what is as usual.
+    const value = key === "bodies" && isRecord(given) ? { ...(model as object), ...given } : given;
     return fits(value, model, key) ? value : undefined;
   } catch {
     return undefined;

@@ -1,6 +1,6 @@
 // The page: what is where, and what changes what.
 
-import { ofContact, ofSystem, ofWindow, type Lines } from "./commands";
+import { ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
 import { ContactView, pin } from "./contact";
 import { Crew, Hand, compiled } from "./crew";
 import { byId, make, onceAFrame } from "./dom";
@@ -11,12 +11,20 @@ import { rounded, typed } from "./number";
 import { write } from "./out";
 import { Plane } from "./plane";
 import { PRESETS, presetOf } from "./presets";
-import { OF_SPHERES } from "./quantities";
-import { Store, type Axes, type Quantity, type State } from "./state";
+import { OF_SPHERES, type Legend } from "./quantities";
+import {
+  BALL,
+  ballOf,
+  Store,
+  type Axes,
+  type Bodies,
+  type Quantity,
+  type State,
+} from "./state";
 import { nameOf, SystemView } from "./system";
 import { whenSchemeChanges } from "./theme";
 import { tour } from "./tour";
-import type { Answer, Axis, Law } from "./types";
+import type { Answer, Atlas, Axis, Law } from "./types";
 
 /** The window and the point of axes that were just chosen. */
 const WINDOWS: Record<Axes, Partial<State>> = {
@@ -54,15 +62,22 @@ class Page {
   private readonly hand: Hand;
   readonly crew: Crew;
   private hashTimer: ReturnType<typeof setTimeout> | undefined;
+  /** All that the controls show, but for the point. */
+  private controls = "";
+  private legend: [Legend, Atlas | undefined] | undefined;
   private linesTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly show = onceAFrame(() => this.showNow());
 
-  constructor(module: Promise<WebAssembly.Module>, from: { state: State; preset: string }) {
+  /** `hands` compute contacts and trace boundaries. */
+  constructor(
+    module: Promise<WebAssembly.Module>,
+    [hand, tracer]: readonly [Hand, Hand],
+    from: { state: State; preset: string },
+  ) {
     this.store = new Store(from.state);
     this.preset = from.preset;
     const cores = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
-    this.hand = new Hand(module);
-    this.hand.warm();
+    this.hand = hand;
     this.crew = new Crew(module, cores);
     this.contact = new ContactView(
       this.hand,
@@ -78,7 +93,7 @@ class Page {
       this.show();
       this.showLines();
     });
-    this.plane = new Plane(byId<HTMLCanvasElement>("plane"), this.crew, new Hand(module), {
+    this.plane = new Plane(this.crew, tracer, {
       point: (point) => this.movePoint(point),
       window: (x, y) =>
         this.store.change(this.store.state.tab === "spheres" ? { x, y } : { sx: x, sy: y }),
@@ -93,7 +108,7 @@ class Page {
     whenSchemeChanges(() => {
       this.contact.redraw();
       this.system.redraw();
-      this.plane.mapping.legend && this.show();
+      this.plane.redraw();
     });
     this.showNow();
     void this.learn();
@@ -150,8 +165,11 @@ class Page {
 
   private showNow(): void {
     const { state } = this.store;
-    document.body.dataset.tab = state.tab;
-    this.showControls(state);
+    this.showPoint(state);
+    const { point: _, ...others } = state;
+    const controls = JSON.stringify([others, this.preset, this.laws.length, this.places, this.system.parsed]);
+    if (controls !== this.controls) this.showControls(state);
+    this.controls = controls;
     const model =
       state.tab === "spheres" ? ofSpheres(state, this.places) : ofText(state, this.system);
     byId("no-plane").hidden = model !== undefined;
@@ -168,21 +186,25 @@ class Page {
     }, 200);
   }
 
-  /** Puts the state into all controls. */
+  /** Puts the point into its controls. */
+  private showPoint(state: State): void {
+    const spheres = state.tab === "spheres";
+    put("point-x", spheres ? state.point[0] : this.system.value(state.across));
+    put("point-y", spheres ? state.point[1] : this.system.value(state.up));
+  }
+
+  /** Puts the state into all other controls. */
   private showControls(state: State): void {
-    const set = (id: string, value: string | number) => {
-      const input = byId<HTMLInputElement | HTMLSelectElement>(id);
-      if (input !== document.activeElement || input.type === "range") input.value = String(value);
-    };
+    document.body.dataset.tab = state.tab;
     const spheres = state.tab === "spheres";
     for (const tab of TABS) {
       const button = byId<HTMLButtonElement>(`tab-${tab}`);
       button.setAttribute("aria-selected", String(tab === state.tab));
       button.tabIndex = tab === state.tab ? 0 : -1;
     }
-    set("preset", this.preset);
+    put("preset", this.preset);
     byId("caption").textContent = presetOf(this.preset).caption;
-    set("axes", state.axes);
+    put("axes", state.axes);
     const quantities = spheres ? OF_SPHERES : quantitiesOf(this.system);
     const choice = byId<HTMLSelectElement>("quantity");
     const names = quantities.map((it) => it.name).join();
@@ -190,7 +212,7 @@ class Page {
       choice.dataset.names = names;
       choice.replaceChildren(...quantities.map((it) => make("option", { value: it.id }, it.name)));
     }
-    set("quantity", spheres ? state.quantity : state.colour);
+    put("quantity", spheres ? state.quantity : state.colour);
     const [x, y] = spheres ? [state.x, state.y] : [state.sx, state.sy];
     for (const [id, value] of [
       ["x-low", x.low],
@@ -198,24 +220,25 @@ class Page {
       ["y-low", y.low],
       ["y-high", y.high],
     ] as const)
-      set(id, value);
+      put(id, value);
     byId<HTMLInputElement>("x-log").checked = x.log;
     byId<HTMLInputElement>("y-log").checked = y.log;
     const [one, other] = this.axisNames(state);
     for (const label of document.querySelectorAll("[data-axis]")) {
       label.textContent = (label as HTMLElement).dataset.axis === "x" ? one : other;
     }
-    set("point-x", spheres ? state.point[0] : this.system.value(state.across));
-    set("point-y", spheres ? state.point[1] : this.system.value(state.up));
     for (const id of ["boundaries", "points", "limits"] as const)
       byId<HTMLInputElement>(id).checked = state[id];
-    set("law", state.law);
+    put("law", state.law);
     for (const id of ["damping", "tangential", "mu"] as const) {
-      set(id, state[id]);
-      set(`${id}-number`, state[id]);
+      put(id, state[id]);
+      put(`${id}-number`, state[id]);
     }
-    set("alpha", state.alpha === 2 / 7 ? "2/7" : state.alpha);
-    for (const [key, value] of Object.entries(state.bodies)) set(key, value);
+    put("alpha", state.alpha === 2 / 7 ? "2/7" : state.alpha);
+    const { other: second, ...first } = state.bodies;
+    for (const [key, value] of Object.entries(first)) put(key, value);
+    for (const [key, value] of Object.entries(second ?? {})) put(`other-${key}`, value);
+    byId<HTMLInputElement>("other").checked = second !== null;
     const law = this.laws.find((it) => it.name === state.law);
     byId<HTMLInputElement>("tangential").disabled = byId<HTMLInputElement>(
       "tangential-number",
@@ -243,8 +266,13 @@ class Page {
   }
 
   private showLegend(): void {
-    const { mapping, atlas } = this.plane;
-    if (mapping.legend) showLegend(byId("legend"), mapping.legend, atlas);
+    const {
+      mapping: { legend },
+      atlas,
+    } = this.plane;
+    if (!legend || (legend === this.legend?.[0] && atlas === this.legend[1])) return;
+    this.legend = [legend, atlas];
+    showLegend(byId("legend"), legend, atlas);
   }
 
   private lines(): [string, Lines][] {
@@ -257,6 +285,7 @@ class Page {
     const one: [string, Lines][] = contact
       ? [["This contact", ofContact(state, contact.document)]]
       : [];
+    if (state.axes === "velocities") return [...one, ["These spheres", ofImpact(state)]];
     return [...one, ["This window", ofWindow(state)]];
   }
 
@@ -421,15 +450,14 @@ class Page {
       const law = this.laws.find((it) => it.name === value);
       const patch: Partial<State> = { law: value };
       if (value === "paper") patch.tangential = 0;
-      if (law && !law.damped) patch.damping = 0;
+      if (law?.law.damping === "none") patch.damping = 0;
       store.change(patch);
     });
     for (const id of ["damping", "tangential", "mu"] as const) {
       on(id, "input", ({ value }) => store.change({ [id]: Number(value) }));
       on(`${id}-number`, "change", (input) => {
         const value = typed(input.value);
-        if (value !== undefined && (value > 0 || (value === 0 && id !== "mu")))
-          store.change({ [id]: value });
+        if (value !== undefined && value >= 0) store.change({ [id]: value });
         input.value = String(store.state[id]);
       });
     }
@@ -438,12 +466,22 @@ class Page {
       if (value !== undefined && value > 0 && value <= 1) store.change({ alpha: value });
       this.showNow();
     });
-    for (const key of Object.keys(store.state.bodies) as (keyof State["bodies"])[]) {
-      on(key, "change", (input) => {
+    const body = (id: string, change: (bodies: Bodies, value: number) => Bodies) =>
+      on(id, "change", (input) => {
         const value = typed(input.value);
-        if (value !== undefined) store.change({ bodies: { ...store.state.bodies, [key]: value } });
+        if (value !== undefined) store.change({ bodies: change(store.state.bodies, value) });
       });
-    }
+    const { other: _, ...one } = store.state.bodies;
+    for (const key of Object.keys(one)) body(key, (bodies, value) => ({ ...bodies, [key]: value }));
+    for (const key of BALL)
+      body(`other-${key}`, ({ other, ...one }, value) => ({
+        ...one,
+        other: { ...(other ?? ballOf(one)), [key]: value },
+      }));
+    on("other", "change", ({ checked }) => {
+      const { bodies } = store.state;
+      store.change({ bodies: { ...bodies, other: checked ? ballOf(bodies) : null } });
+    });
     byId("pin").onclick = () =>
       store.change({ pinned: store.state.pinned ? null : pin(store.state) });
     byId("home").onclick = () => {
@@ -475,7 +513,7 @@ class Page {
       state.tab === "spheres"
         ? [...state.point]
         : [this.system.value(state.across), this.system.value(state.up)];
-    if (value !== undefined && (value > 0 || state.tab === "system")) {
+    if (value !== undefined && (value >= 0 || state.tab === "system")) {
       now[place] = value;
       this.movePoint(now);
     }
@@ -524,6 +562,12 @@ class Page {
   }
 }
 
+/** Puts a value into a control, unless it is being typed. */
+function put(id: string, value: string | number): void {
+  const input = byId<HTMLInputElement | HTMLSelectElement>(id);
+  if (input !== document.activeElement || input.type === "range") input.value = String(value);
+}
+
 /** The view with which the page was written. */
 function ownView(): string {
   return document.querySelector<HTMLMetaElement>("meta[name=stickslip-view]")?.content ?? "";
@@ -533,9 +577,12 @@ const HINT = "Drag the point; wheel or pinch to zoom; Shift and drag to move the
 
 async function start(): Promise<void> {
   try {
-    // Controls are drawn, and the first worker starts, while the module is unpacked.
-    const module = new Promise((resolve) => setTimeout(resolve)).then(compiled);
-    const page = new Page(module, decoded(location.hash || ownView()));
+    // Controls are drawn while workers unpack the module.
+    let ready = (_: Promise<WebAssembly.Module>): void => {};
+    const module = new Promise<WebAssembly.Module>((resolve) => (ready = resolve));
+    const hands = [new Hand(module), new Hand(module)] as const;
+    ready(compiled([...hands]));
+    const page = new Page(module, hands, decoded(location.hash || ownView()));
     (globalThis as Record<string, unknown>).explorer = page.inside;
     await module;
     document.body.classList.add("ready");

@@ -19,7 +19,7 @@ export function short(value: number, digits = 5): string {
   if (!Number.isFinite(value)) return "—";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size < 1e-4 || size >= 1e6) {
+  if (size < 1e-4 || size >= Math.min(1e6, 10 ** digits)) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
     const trimmed = (mantissa ?? "").replace(/\.?0+$/, "");
     return `${minus(trimmed)}·10${raised(Number(exponent))}`;

@@ -24,7 +24,7 @@ export interface Sources {
 export async function write(what: string, from: Sources): Promise<void> {
   const { plane } = from;
   const draw = (pen: Pen, width: number, height: number) =>
-    plane.drawWith(pen, width, height, false);
+    plane.drawWith(pen, width, height);
   switch (what) {
     case "plane-svg":
       return save("plane.svg", svg(...plane.extent, draw), "image/svg+xml");
@@ -40,7 +40,7 @@ export async function write(what: string, from: Sources): Promise<void> {
       return save(`${nameOf(from.state)}.slip`, textOf(from.state));
     case "course-csv":
     case "events-csv": {
-      const text = tableOf(what, from);
+      const text = await tableOf(what, from);
       return text === undefined
         ? undefined
         : save(`${what.replace("-csv", "")}.csv`, text, "text/csv");
@@ -59,13 +59,16 @@ export async function write(what: string, from: Sources): Promise<void> {
   }
 }
 
-function tableOf(
+async function tableOf(
   what: "course-csv" | "events-csv",
   { state, contact, system }: Sources,
-): string | undefined {
+): Promise<string | undefined> {
   const course = what === "course-csv";
   if (state.tab === "spheres") {
-    if (course) return contact.course && courseTable(contact.course);
+    if (course) {
+      const fine = await contact.fine(state);
+      return fine && courseTable(fine);
+    }
     return contact.contact && switchTable(contact.contact.document.switches);
   }
   const { run, parsed } = system;

@@ -19,9 +19,17 @@ export interface Words {
 
 export type Path = [number, number][];
 
+/** A path as its number of points, and the coordinates of each. */
+export interface Track {
+  length: number;
+  x(index: number): number;
+  y(index: number): number;
+}
+
 export interface Pen {
   rectangle(x: number, y: number, width: number, height: number, fill: string): void;
   line(path: Path, stroke: Stroke): void;
+  curve(track: Track, stroke: Stroke): void;
   area(path: Path, fill: string, stroke?: Stroke): void;
   disc(x: number, y: number, radius: number, fill: string, stroke?: Stroke): void;
   text(words: string, x: number, y: number, style: Words): void;
@@ -42,6 +50,22 @@ export class CanvasPen implements Pen {
 
   line(path: Path, stroke: Stroke): void {
     this.trace(path);
+    this.stroke(stroke);
+  }
+
+  curve({ length, x, y }: Track, stroke: Stroke): void {
+    /** Points that are closer in pixels are left out. */
+    const NEAR = 1.2;
+    const { context } = this;
+    context.beginPath();
+    let [lastX, lastY] = [NaN, NaN];
+    for (let index = 0; index < length; index++) {
+      const [atX, atY] = [x(index), y(index)];
+      const near = Math.abs(atX - lastX) < NEAR && Math.abs(atY - lastY) < NEAR;
+      if (near && index < length - 1) continue;
+      context.lineTo(atX, atY);
+      [lastX, lastY] = [atX, atY];
+    }
     this.stroke(stroke);
   }
 
@@ -124,6 +148,13 @@ export class SvgPen implements Pen {
   rectangle(x: number, y: number, width: number, height: number, fill: string): void {
     this.parts.push(
       `<rect x="${near(x)}" y="${near(y)}" width="${near(width)}" height="${near(height)}" fill="${fill}"/>`,
+    );
+  }
+
+  curve({ length, x, y }: Track, stroke: Stroke): void {
+    this.line(
+      Array.from({ length }, (_, index) => [x(index), y(index)]),
+      stroke,
     );
   }
 

@@ -1,6 +1,6 @@
 // The plane: a map as colours, with axes, boundaries, regions, and a point that one drags.
 
-import { onceAFrame, fit } from "./dom";
+import { byId, fit, onceAFrame, sizeOf } from "./dom";
 import type { Crew, Hand } from "./crew";
 import { listen } from "./gestures";
 import { Mapping } from "./mapping";
@@ -51,6 +51,13 @@ export interface PlaneEvents {
   status(words: string): void;
 }
 
+/** The regions and boundaries of an atlas in pixels. */
+interface Paths {
+  key: string;
+  regions: Path2D[];
+  lines: Path2D[];
+}
+
 /** Room around the map, in pixels. */
 const LEFT = 58;
 const RIGHT = 14;
@@ -70,35 +77,44 @@ const DASHES: Record<string, number[]> = {
 export class Plane {
   readonly mapping: Mapping;
   atlas: Atlas | undefined;
+  /** Curves of the atlas that is being traced. */
+  found: Float64Array[] = [];
   private atlasKey = "";
   private atlasNote = "";
   private model: PlaneModel | undefined;
   private hovered: [number, number] | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private paths: { key: string; regions: Path2D[] } = { key: "", regions: [] };
+  private paths: Paths = { key: "", regions: [], lines: [] };
   private readonly draw = onceAFrame(() => this.drawNow());
-  private readonly canvas: HTMLCanvasElement;
+  /** What is drawn again only when it changes, below what follows the pointer. */
+  private readonly ground = byId<HTMLCanvasElement>("map");
+  private readonly canvas = byId<HTMLCanvasElement>("plane");
+  private grounded = "";
+  /** The region that is outlined. */
+  private outlined: string | undefined;
+  /** The point, which is moved without drawing anything. */
+  private readonly mark = byId("point");
   private computed = "";
 
   constructor(
-    canvas: HTMLCanvasElement,
     crew: Crew,
     private readonly tracer: Hand,
     private readonly events: PlaneEvents,
   ) {
-    this.canvas = canvas;
+    const { canvas } = this;
     this.mapping = new Mapping(crew, () => {
-      this.draw();
+      this.redraw();
       this.report();
     });
     listen(canvas, {
       grab: (x, y) => this.grab(x, y),
       point: (x, y) => this.events.point(this.valuesAt(x, y)),
       move: (dx, dy, zoom, x, y) => this.move(dx, dy, zoom, x, y),
-      hover: (place) => {
+      hover: (place, dragging) => {
         this.hovered = place;
         this.draw();
-        this.events.told(place ? this.tellAt(...place) : "");
+        const line = place && !dragging ? this.lineAt(...place) : undefined;
+        this.events.told(place ? [this.tellAt(...place), line].filter(Boolean).join(" · ") : "");
       },
       step: (dx, dy, fine) => this.step(dx, dy, fine),
     });
@@ -109,8 +125,8 @@ export class Plane {
 
   /** The size of the map in pixels. */
   private get size(): [number, number] {
-    const { clientWidth, clientHeight } = this.canvas;
-    return [Math.max(40, clientWidth - LEFT - RIGHT), Math.max(40, clientHeight - TOP - BOTTOM)];
+    const [width, height] = sizeOf(this.canvas);
+    return [Math.max(40, width - LEFT - RIGHT), Math.max(40, height - TOP - BOTTOM)];
   }
 
   /** Shows a model; computes what is new in it. */
@@ -121,7 +137,7 @@ export class Plane {
     if (model.shown !== before?.shown) this.mapping.show(model.shown);
     const [width, height] = this.size.map(Math.round) as [number, number];
     const key = JSON.stringify([model.scene, width, height]);
-    if (key !== this.computed && this.canvas.clientWidth > 0) {
+    if (key !== this.computed && sizeOf(this.canvas)[0] > 0) {
       this.computed = key;
       this.mapping.compute(model.scene, width, height, model.fast ? [6, 1] : [16, 5, 2]);
     }
@@ -142,6 +158,7 @@ export class Plane {
     if (!model.boundaries || key === this.atlasKey) return;
     if (sceneWithoutWindow(key) !== sceneWithoutWindow(this.atlasKey)) this.atlas = undefined;
     this.atlasKey = key;
+    this.found = [];
     if (this.tracer.busy) this.tracer.restart();
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.trace(key, model.scene), model.fast ? 60 : 300);
@@ -153,8 +170,10 @@ export class Plane {
     const { answer, ms } = await this.tracer.do<Answer & Atlas>(
       { task: "ask", scene, request: { do: "atlas" } },
       300_000,
+      (curve) => this.follow(key, curve),
     );
     if (key !== this.atlasKey) return;
+    this.found = [];
     if (answer.error) {
       this.atlas = undefined;
       this.atlasNote = answer.error === "cancelled" ? "" : `no boundaries: ${answer.error}`;
@@ -167,7 +186,16 @@ export class Plane {
     }
     this.outline();
     this.report();
-    this.draw();
+    this.redraw();
+  }
+
+  /** Shows a curve before the others. */
+  private follow(key: string, curve: Float64Array): void {
+    if (key !== this.atlasKey) return;
+    this.found.push(curve);
+    this.atlasNote = `tracing boundaries … ${this.found.length}`;
+    this.report();
+    this.redraw();
   }
 
   private report(): void {
@@ -258,20 +286,41 @@ export class Plane {
   private regionAt(x: number, y: number): Region | undefined {
     const { atlas } = this;
     if (!atlas || !this.model?.boundaries) return undefined;
-    const paths = this.regionPaths(atlas);
     const context = this.canvas.getContext("2d");
     // Paths are scaled with the canvas, and the place is not.
     const ratio = window.devicePixelRatio || 1;
-    const index = paths.findIndex((path) =>
+    const index = this.pathsOf(atlas).regions.findIndex((path) =>
       context?.isPointInPath(path, x * ratio, y * ratio, "evenodd"),
     );
     return atlas.regions[index];
   }
 
-  private regionPaths(atlas: Atlas): Path2D[] {
+  /** The name of the vertex or boundary at a place in pixels. */
+  private lineAt(x: number, y: number): string | undefined {
+    const { atlas } = this;
+    const context = this.canvas.getContext("2d");
+    if (!atlas || !context || !this.model?.boundaries) return undefined;
+    const near = ([atX, atY]: [number, number]) => Math.hypot(atX - x, atY - y) < 7;
+    const vertex = atlas.vertices.find((it) => near(this.toPixels(it.point)));
+    if (vertex) return `vertex: ${vertex.name}`;
+    const ratio = window.devicePixelRatio || 1;
+    context.lineWidth = 8;
+    const index = this.pathsOf(atlas).lines.findIndex((path) =>
+      context.isPointInStroke(path, x * ratio, y * ratio),
+    );
+    const kind = atlas.boundaries[index]?.kind;
+    return kind && `boundary: ${kind.replaceAll("-", " ")}`;
+  }
+
+  private pathsOf(atlas: Atlas): Paths {
     const key = `${this.computed}${this.atlasKey}`;
     if (this.paths.key === key && this.paths.regions.length === atlas.regions.length)
-      return this.paths.regions;
+      return this.paths;
+    const lines = atlas.boundaries.map(({ points }) => {
+      const path = new Path2D();
+      for (const point of points) path.lineTo(...this.toPixels(point));
+      return path;
+    });
     const regions = atlas.regions.map((region) => {
       const path = new Path2D();
       for (const ring of region.rings) {
@@ -282,8 +331,8 @@ export class Plane {
       }
       return path;
     });
-    this.paths = { key, regions };
-    return regions;
+    this.paths = { key, regions, lines };
+    return this.paths;
   }
 
   private ring(atlas: Atlas, ring: Region["rings"][number]): Path {
@@ -316,17 +365,48 @@ export class Plane {
     return [place, itinerary, told].filter((it) => it !== undefined).join(" · ");
   }
 
-  private drawNow(): void {
-    const { model, canvas } = this;
-    if (!model || canvas.clientWidth === 0) return;
-    const [context, width, height] = fit(canvas);
-    this.drawWith(new CanvasPen(context), width, height, true);
+  /** Draws everything again. */
+  redraw(): void {
+    this.grounded = "";
+    this.outlined = undefined;
+    this.draw();
   }
 
-  /** Draws the plane; for files without what is under the pointer. */
-  drawWith(pen: Pen, width: number, height: number, interactive: boolean): void {
-    const { model, mapping, atlas } = this;
+  private drawNow(): void {
+    const { model, canvas, atlas } = this;
+    if (!model || sizeOf(canvas)[0] === 0) return;
+    const { scene, names, pinned, boundaries, marks, curve, notches } = model;
+    const all = [this.size, devicePixelRatio, scene, names, pinned, boundaries, marks, curve, notches];
+    const key = JSON.stringify(all);
+    if (key !== this.grounded) {
+      const [context, width, height] = fit(this.ground);
+      this.drawGround(new CanvasPen(context), model, width, height);
+      this.grounded = key;
+    }
+    const region = this.hovered && this.regionAt(...this.hovered);
+    const outlined = region && atlas ? `${key}${atlas.regions.indexOf(region)}` : "";
+    if (outlined !== this.outlined) {
+      this.outlined = outlined;
+      const pen = new CanvasPen(fit(canvas)[0]);
+      if (region && atlas)
+        pen.within(LEFT, TOP, ...this.size, () => this.drawRegion(pen, atlas, region));
+    }
+    const [x, y] = this.toPixels(model.point);
+    this.mark.hidden = this.grab(x, y) === "window";
+    this.mark.style.transform = `translate(${x}px, ${y}px)`;
+  }
+
+  /** Draws the plane for a file. */
+  drawWith(pen: Pen, width: number, height: number): void {
+    const { model } = this;
     if (!model) return;
+    this.drawGround(pen, model, width, height);
+    pen.within(LEFT, TOP, ...this.size, () => this.drawPoint(pen, model));
+  }
+
+  /** Draws all but the point. */
+  private drawGround(pen: Pen, model: PlaneModel, width: number, height: number): void {
+    const { mapping, atlas } = this;
     const colours = theme();
     const [across, down] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
     pen.within(LEFT, TOP, across, down, () => {
@@ -343,13 +423,13 @@ export class Plane {
         );
       }
       if (model.boundaries && atlas) this.drawBoundaries(pen, atlas);
-      if (interactive && this.hovered && atlas) this.drawRegion(pen, atlas, this.hovered);
+      if (model.boundaries && !atlas) this.drawFound(pen);
       if (model.curve.length) {
         const path = model.curve.map((point) => this.toPixels(point));
         pen.line(path, { colour: "#fff", width: 3.5 });
         pen.line(path, { colour: "#000", width: 1.5, dash: [10, 5] });
       }
-      this.drawPoints(pen, model);
+      this.drawMarks(pen, model);
     });
     this.drawAxes(pen, model, across, down);
   }
@@ -357,8 +437,7 @@ export class Plane {
   private drawBoundaries(pen: Pen, atlas: Atlas): void {
     const many = atlas.boundaries.length > 150;
     for (const { kind, points } of atlas.boundaries) {
-      const path = points.map((point) => this.toPixels(point));
-      pen.line(path, {
+      pen.line(points.map((point) => this.toPixels(point)), {
         colour: "#101010",
         width: many ? 0.7 : 1.15,
         dash: many ? [] : (DASHES[kind] ?? []),
@@ -370,9 +449,17 @@ export class Plane {
     }
   }
 
-  private drawRegion(pen: Pen, atlas: Atlas, place: [number, number]): void {
-    const region = this.regionAt(...place);
-    if (!region) return;
+  private drawFound(pen: Pen): void {
+    for (const curve of this.found) {
+      const place = (index: number) =>
+        this.toPixels([curve[2 * index] as number, curve[2 * index + 1] as number]);
+      const length = curve.length / 2;
+      const track = { length, x: (at: number) => place(at)[0], y: (at: number) => place(at)[1] };
+      pen.curve(track, { colour: "#101010", width: 1.15 });
+    }
+  }
+
+  private drawRegion(pen: Pen, atlas: Atlas, region: Region): void {
     for (const ring of region.rings) {
       const path = this.ring(atlas, ring);
       const closed: Path = [...path, path[0] ?? [0, 0]];
@@ -381,7 +468,7 @@ export class Plane {
     }
   }
 
-  private drawPoints(pen: Pen, model: PlaneModel): void {
+  private drawMarks(pen: Pen, model: PlaneModel): void {
     const halo = "#fff";
     for (const { at, name } of model.marks) {
       const [x, y] = this.toPixels(at);
@@ -393,6 +480,9 @@ export class Plane {
       pen.disc(x, y, 6, "#fff", { colour: "#111", width: 1.5 });
       pen.disc(x, y, 3, theme().pinned);
     }
+  }
+
+  private drawPoint(pen: Pen, model: PlaneModel): void {
     const [x, y] = this.toPixels(model.point);
     pen.disc(x, y, 9, "rgba(255,255,255,0.35)", { colour: "#fff", width: 3.5 });
     pen.disc(x, y, 9, "rgba(0,0,0,0)", { colour: "#111", width: 1.6 });
@@ -469,7 +559,7 @@ export class Plane {
 
   /** The size of the canvas, for files. */
   get extent(): [number, number] {
-    return [this.canvas.clientWidth, this.canvas.clientHeight];
+    return sizeOf(this.canvas);
   }
 }
 

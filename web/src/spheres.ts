@@ -1,6 +1,6 @@
 // The two spheres, drawn as they move through the contact.
 
-import { fit } from "./dom";
+import { fit, onceAFrame, sizeOf } from "./dom";
 import type { Course } from "./course";
 import { CanvasPen, type Path } from "./pen";
 import { theme } from "./theme";
@@ -29,6 +29,8 @@ export class Spheres {
   private ratio = 1;
   private alpha = 2 / 7;
   private frame = 0;
+  /** What was drawn last. */
+  private drawn = "";
   private last = 0;
   /** The time that is shown, from −FLIGHT to the end of contact and FLIGHT beyond. */
   time = 0;
@@ -135,12 +137,19 @@ export class Spheres {
     this.draw();
   }
 
-  draw(): void {
-    if (this.canvas.clientWidth === 0 || !this.contact) return;
+  readonly draw = onceAFrame(() => this.drawNow());
+
+  private drawNow(): void {
+    if (sizeOf(this.canvas)[0] === 0 || !this.contact) return;
+    const colours = theme();
+    const pose = this.pose(this.time);
+    // Before the contact, the spheres of all contacts look the same.
+    const key = JSON.stringify([pose, this.time, sizeOf(this.canvas), devicePixelRatio, colours.ink]);
+    if (key === this.drawn) return;
+    this.drawn = key;
     const [context, width, height] = fit(this.canvas);
     const pen = new CanvasPen(context);
-    const colours = theme();
-    const { gap, shift, turn, sliding, normal, tangential } = this.pose(this.time);
+    const { gap, shift, turn, sliding, normal, tangential } = pose;
     const scale = height / (2 * RADIUS + 1.7);
     const centre = [width / 2, height / 2] as const;
     const apart = (2 * RADIUS + gap) / 2;

@@ -7,11 +7,17 @@ export type Axes = "kappa-psi" | "kappa-ratio" | "axis-ratio" | "velocities";
 export type Quantity =
   "eps_t" | "count" | "time" | "lost" | "itinerary" | "v0" | "v1" | "v2" | "v3";
 
-export interface Bodies {
+/** A homogeneous sphere. */
+export interface Ball {
   radius_m: number;
   young_modulus_pa: number;
   poisson_ratio: number;
   density_kg_per_m3: number;
+}
+
+export interface Bodies extends Ball {
+  /** The second sphere, if it is another one. */
+  other: Ball | null;
   tangential_stiffness_kg_per_s2: number;
   damping_time_s: number;
 }
@@ -64,9 +70,27 @@ export const STEEL: Bodies = {
   young_modulus_pa: 210e9,
   poisson_ratio: 0.3,
   density_kg_per_m3: 7850,
+  other: null,
   tangential_stiffness_kg_per_s2: 1e9,
   damping_time_s: 0,
 };
+
+export const BALL = [
+  "radius_m",
+  "young_modulus_pa",
+  "poisson_ratio",
+  "density_kg_per_m3",
+] as const;
+
+/** The sphere alone, without what is of both. */
+export function ballOf({
+  radius_m,
+  young_modulus_pa,
+  poisson_ratio,
+  density_kg_per_m3,
+}: Ball): Ball {
+  return { radius_m, young_modulus_pa, poisson_ratio, density_kg_per_m3 };
+}
 
 export const DEFAULT: State = {
   tab: "spheres",

@@ -2,7 +2,7 @@
 
 import { described, drawChart, timeAt, type Chart, type Panel } from "./chart";
 import type { Hand } from "./crew";
-import { byId, fit, make, onceAFrame } from "./dom";
+import { byId, fit, make, onceAFrame, sizeOf } from "./dom";
 import { EXAMPLES } from "./examples";
 import { short, typed } from "./number";
 import { CanvasPen } from "./pen";
@@ -426,7 +426,7 @@ export class SystemView {
   }
 
   private drawNow(): void {
-    if (this.canvas.clientWidth === 0) return;
+    if (sizeOf(this.canvas)[0] === 0) return;
     const [context, width, height] = fit(this.canvas);
     if (this.chart) drawChart(new CanvasPen(context), this.chart, width, height, this.cursor);
   }

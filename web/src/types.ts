@@ -105,10 +105,14 @@ export interface Law {
   code: string;
   equations: string;
   energy: string;
-  damped: boolean;
   tangential: boolean;
-  hertz: boolean;
-  mindlin: boolean;
+  law: {
+    normal: "linear" | "hertz";
+    damping: "none" | "linear" | "viscoelastic" | "tsuji" | "hysteretic" | "hardening";
+    tangential: "constant" | "mindlin";
+    history: "displacement" | "force" | "none";
+    coulomb_test?: "total" | "spring";
+  };
   source: string;
   checked: string;
 }

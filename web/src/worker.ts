@@ -1,7 +1,13 @@
-// A worker: it gets the compiled module, then tasks, one after the other.
+// A worker: it may unpack a part of the module, gets it compiled, then tasks, one after the other.
 
 import { Engine } from "./engine";
 import type { Answer, MapPart, Task } from "./types";
+import { unpack } from "./unpack";
+
+type Message =
+  | { packed: string; size: number }
+  | { module: WebAssembly.Module }
+  | { id: number; task: Task };
 
 interface Port {
   onmessage: ((event: MessageEvent) => void) | null;
@@ -10,19 +16,37 @@ interface Port {
 
 const port = globalThis as unknown as Port;
 let engine: Promise<Engine> | undefined;
+/** The task that is done. */
+let doing = 0;
 
 port.onmessage = async ({
   data,
-}: MessageEvent<{ module: WebAssembly.Module } | { id: number; task: Task }>) => {
+}: MessageEvent<Message>) => {
+  if ("packed" in data) {
+    const text = atob(data.packed);
+    const packed = new Uint8Array(text.length);
+    for (let index = 0; index < text.length; index++) packed[index] = text.charCodeAt(index);
+    const part = unpack(packed, data.size);
+    port.postMessage({ part }, [part.buffer as ArrayBuffer]);
+    return;
+  }
   if ("module" in data) {
-    engine = Engine.start(data.module);
+    engine = Engine.start(data.module, (curve) =>
+      port.postMessage({ id: doing, curve }, [curve.buffer as ArrayBuffer]),
+    );
     return;
   }
   const ready = await engine;
   if (!ready) return;
+  doing = data.id;
   const begun = performance.now();
-  const answer = run(ready, data.task);
-  port.postMessage({ id: data.id, answer, ms: performance.now() - begun }, transferred(answer));
+  try {
+    const answer = run(ready, data.task);
+    port.postMessage({ id: data.id, answer, ms: performance.now() - begun }, transferred(answer));
+  } catch (error) {
+    // Its memory may be in any state.
+    port.postMessage({ id: data.id, dead: error instanceof Error ? error.message : String(error) });
+  }
 };
 
 function run(engine: Engine, task: Task): Answer | MapPart {

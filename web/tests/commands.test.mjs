@@ -66,6 +66,16 @@ for (const [name, change] of [
     },
   ],
   [
+    "a hysteretic law",
+    {
+      law: "walton-braun",
+      damping: 0.2,
+      point: [5, 0.3],
+      x: { low: 4, high: 5, log: true },
+      y: { low: 0.8, high: 0.9, log: false },
+    },
+  ],
+  [
     "impact ratios from 0",
     {
       axes: "axis-ratio",
@@ -106,6 +116,24 @@ for (const [name, change] of [
     await close();
   });
 }
+
+test("commands of two spheres", { skip }, async () => {
+  const { page, said, close } = await browser.open("preset=figure2");
+  await page.check("#other");
+  await page.fill("#other-radius_m", "0.01");
+  await page.press("#other-radius_m", "Enter");
+  await page.waitForFunction(() => /Sphere\(0.01/.test(document.querySelector("#lines").textContent));
+  const own = await page.evaluate(() => globalThis.explorer.contact.contact.document);
+  const [collide, , impact] = await lines(page);
+  const native = JSON.parse(run(collide, "--format", "json"));
+  assert.equal(native.itinerary, own.itinerary, collide);
+  if (python) {
+    const found = inPython(impact, "float(found.eps_t)");
+    assert.ok(Math.abs(found - own.eps_t) < 1e-9, `${impact} ${found} ${own.eps_t}`);
+  }
+  assert.deepEqual(said, []);
+  await close();
+});
 
 test("commands of a system", { skip }, async () => {
   const axis = (low, high) => encodeURIComponent(JSON.stringify({ low, high, log: false }));

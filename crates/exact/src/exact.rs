@@ -13,8 +13,8 @@
 //! Source files in reading order: `moment` and `slip` are what a collision is made of; `normal` is
 //! the interface of normal motions, with the closed form without damping and the expansion with it;
 //! `slide` finds the end of a slip phase, `swing` and `release` the end of a stick phase, `phases`
-//! begins a collision, `margin` and `late` follow prescribed switches, `cusp` has what vanishes
-//! where grazes end in one point.
+//! begins a collision, `margin` and `late` follow prescribed switches, `course` has the normal
+//! motion at any time, `cusp` what vanishes where grazes end in one point.
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). The statements
 //! on which the decisions rest are proved in docs/physics.md.
@@ -31,6 +31,7 @@ use slip::SlipPhase;
 use swing::Swing;
 
 mod boundaries;
+mod course;
 mod cusp;
 mod distance;
 mod error;
@@ -49,6 +50,7 @@ mod swing;
 
 pub use crate::domain::MOST_STIFFNESS;
 pub use boundaries::{small_impact_boundary, top_boundary};
+pub use course::{NormalState, normal_state};
 pub use cusp::{cusps, swallowtail};
 pub use distance::distance;
 pub use error::ExactError;

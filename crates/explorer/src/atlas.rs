@@ -5,47 +5,32 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
-    Atlas, AtlasOptions, Names, Point, RunNames, Serial, Side, SpecialPoint, Stretch, Surveyor,
-    TraceOptions, VerifyOptions, Watch, Window,
+    Atlas, AtlasOptions, Effort, Names, Point, RunNames, Serial, Side, SpecialPoint, Stretch,
+    Surveyor, TraceOptions, VerifyOptions, Watch, Window,
 };
 
 use crate::axis::Axis;
-use crate::itinerary;
 use crate::spheres::{Spheres, collide};
 use crate::system::SystemPlane;
+use crate::{itinerary, page};
 
-/// How long a run takes.
-#[derive(Clone, Copy)]
-enum PerRun {
-    Microseconds,
-    Milliseconds,
-}
-
-impl PerRun {
-    /// The options for a window with this shorter side. The verification is a spot check: it takes
-    /// as long as the trace.
-    fn options(self, shorter: f64) -> AtlasOptions {
-        /// The part of the shorter side by which a curve may be off. A picture needs 1e-4, but
-        /// regions narrower than a curve's error would not be found.
-        const ACCURACY: f64 = 1e-8;
-        let (cells, random_points, near_points, rounds) = match self {
-            Self::Microseconds => (32, 2000, 4, 4),
-            Self::Milliseconds => (12, 300, 2, 2),
-        };
-        let interpolation = (ACCURACY * shorter).clamp(1e-11, 1e-2);
-        let trace =
-            TraceOptions { interpolation, cells, max_curves: 1500, ..TraceOptions::default() };
-        let tolerance = 10.0 * interpolation;
-        let (nearest, farthest) = (10.0 * tolerance, 1e4 * tolerance);
-        let verify = VerifyOptions {
-            random_points,
-            near_points,
-            nearest,
-            farthest,
-            ..VerifyOptions::default()
-        };
-        AtlasOptions { trace, tolerance, verify, rounds, ..AtlasOptions::default() }
-    }
+/// The options for a window with this shorter side. Where a run takes microseconds, the effort is
+/// the usual one, but the verification a spot check that takes no longer than the trace; else it is
+/// that of a screen.
+fn options(shorter: f64, effort: Effort) -> AtlasOptions {
+    /// The part of the shorter side by which a curve may be off. A picture needs 1e-4, but regions
+    /// narrower than a curve's error would not be found, and a trace of that accuracy takes as long.
+    const ACCURACY: f64 = 1e-8;
+    let interpolation = (ACCURACY * shorter).clamp(1e-11, 1e-2);
+    let trace = TraceOptions { interpolation, max_curves: 1500, ..TraceOptions::default() };
+    let tolerance = 10.0 * interpolation;
+    let (nearest, farthest) = (10.0 * tolerance, 1e4 * tolerance);
+    let usual = VerifyOptions { nearest, farthest, ..VerifyOptions::default() };
+    let verify = match effort {
+        Effort::Default => VerifyOptions { random_points: 2000, near_points: 4, ..usual },
+        _ => usual,
+    };
+    effort.applied(AtlasOptions { trace, tolerance, verify, rounds: 4, ..AtlasOptions::default() })
 }
 
 /// The least part of an axis' upper end that is traced, where the axis begins at 0.
@@ -63,14 +48,15 @@ pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String
     plane.require_smooth().map_err(|error| error.to_string())?;
     let window = plane.window();
     let any = plane.contact(&window.low).map_err(|error| error.to_string())?;
-    let per_run = if any.obeys_paper() { PerRun::Microseconds } else { PerRun::Milliseconds };
-    let options = per_run.options(window.extent().min());
-    let surveyor = Surveyor { options, executor: Serial, watch: Watch::SILENT };
-    let atlas = surveyor.atlas(&plane.family(), &window).map_err(|error| error.to_string())?;
+    let effort = if any.obeys_paper() { Effort::Default } else { Effort::Screen };
     let place = |point: &Point| {
         let [x, y] = plane.parameters(point);
         [x / units[0], y / units[1]]
     };
+    let show = |points: &[Point]| page::show(&points.iter().map(place).collect::<Vec<_>>());
+    let (options, watch) = (options(window.extent().min(), effort), Watch::SILENT.showing(&show));
+    let surveyor = Surveyor { options, executor: Serial, watch };
+    let atlas = surveyor.atlas(&plane.family(), &window).map_err(|error| error.to_string())?;
     let name = |region: usize| {
         let sample = &atlas.plane.regions()[region].sample;
         let found = plane.contact(sample).ok().and_then(|contact| Some(collide(contact).ok()?.0));
@@ -87,8 +73,10 @@ pub fn of_spheres(spheres: &Spheres, [x, y]: [&Axis; 2]) -> Result<Value, String
 /// The boundaries and regions of a system.
 pub fn of_system(plane: &SystemPlane, [x, y]: [&Axis; 2]) -> Result<Value, String> {
     let window = Window { low: Point::new(x.low, y.low), high: Point::new(x.high, y.high) };
-    let options = PerRun::Milliseconds.options(window.extent().min());
-    let surveyor = Surveyor { options, executor: Serial, watch: Watch::SILENT };
+    let place = |point: &Point| (*point).into();
+    let show = |points: &[Point]| page::show(&points.iter().map(place).collect::<Vec<_>>());
+    let options = options(window.extent().min(), Effort::Screen);
+    let surveyor = Surveyor { options, executor: Serial, watch: Watch::SILENT.showing(&show) };
     let family = plane.family();
     let atlas = surveyor.atlas(family, &window).map_err(|error| error.to_string())?;
     let name = |region: usize| {
@@ -99,7 +87,7 @@ pub fn of_system(plane: &SystemPlane, [x, y]: [&Axis; 2]) -> Result<Value, Strin
         let count = label.fired().map_or(0, <[usize]>::len);
         (itinerary::words(label, family.rules()), count, itinerary::of_label(label))
     };
-    let (names, place) = (RunNames::default(), |point: &Point| (*point).into());
+    let names = RunNames::default();
     Ok(document(&atlas, &window, place, |margin| names.kind(margin), name))
 }
 

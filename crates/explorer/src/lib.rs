@@ -5,17 +5,22 @@
 //! [`counts_ptr`], [`codes_ptr`] and [`numbers_ptr`], which stay valid until the next call. There
 //! is one state for each thread, and each worker of the page has a module of its own.
 //!
+//! The one import is `env.curve`, by which the page is shown each curve of an atlas as soon as it has
+//! been followed.
+//!
 //! Errors are answers with a field `error`. Nothing here panics on any request.
 //!
 //! The modules in reading order: `request` has what a page asks for, `scene` the plane that a map
 //! or an atlas shows, `axis` and `point` what it is made of, `spheres` and `system` its two kinds,
-//! `itinerary` their colours, `atlas` the boundaries, and `state` what the arrays hold.
+//! `itinerary` their colours, `atlas` the boundaries, `page` what is shown before the answer, and
+//! `state` what the arrays hold.
 
 #![allow(clippy::missing_errors_doc, reason = "errors of the program are sentences for its user")]
 
 mod atlas;
 mod axis;
 mod itinerary;
+mod page;
 mod request;
 mod scene;
 mod spheres;
@@ -65,13 +70,13 @@ pub extern "C" fn stride() -> usize {
     with(|state| state.stride())
 }
 
-/// Computes the course of the contact at a point of the present scene: `intervals` + 1 even moments
-/// and all switches, each [`course_stride`] numbers. Returns the number of moments; if it is 0, the
-/// text says why.
+/// Computes the course of the contact at a point of the present scene: `least` + 1 even moments, or
+/// more if the spring swings often, and all switches, each [`course_stride`] numbers. Returns the
+/// number of moments; if it is 0, the text says why.
 #[allow(unsafe_code, reason = "the name of an export")]
 #[unsafe(no_mangle)]
-pub extern "C" fn course(x: f64, y: f64, intervals: usize) -> usize {
-    with(|state| state.course([x, y], intervals))
+pub extern "C" fn course(x: f64, y: f64, least: usize) -> usize {
+    with(|state| state.course([x, y], least))
 }
 
 /// The number of numbers of each moment of a course: time, compression, its rate, normal force,

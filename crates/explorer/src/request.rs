@@ -63,10 +63,8 @@ fn laws() -> Value {
             "code": preset.code,
             "equations": preset.law.equations(),
             "energy": preset.law.spring_energy().to_string(),
-            "damped": preset.law.damping != stickslip_model::Damping::None,
             "tangential": preset.tangential_damping,
-            "hertz": preset.law.normal == stickslip_model::Normal::Hertz,
-            "mindlin": preset.law.tangential == stickslip_model::Tangential::Mindlin,
+            "law": preset.law,
             "source": preset.source,
             "checked": preset.checked,
         })

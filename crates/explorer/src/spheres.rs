@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stickslip_model::history::Moment;
-use stickslip_model::spheres::{BodyPair, Material, Surface};
+use stickslip_model::history::{History, Moment};
+use stickslip_model::spheres::{Body, BodyPair, Material, Sphere, Surface};
 use stickslip_model::{
     Collider, Collision, Contact, Engine, InvalidValue, Reduction, Regime, Side, document, exact,
     linear, presets,
@@ -45,15 +45,45 @@ enum Axes {
     Velocities,
 }
 
-/// Two equal spheres.
+/// Two homogeneous spheres: equal ones, or another one beside the first.
 #[derive(Clone, Copy, Deserialize)]
 struct Bodies {
+    #[serde(flatten)]
+    one: Ball,
+    #[serde(default)]
+    other: Option<Ball>,
+    tangential_stiffness_kg_per_s2: f64,
+    damping_time_s: f64,
+}
+
+/// A homogeneous sphere.
+#[derive(Clone, Copy, Deserialize)]
+struct Ball {
     radius_m: f64,
     young_modulus_pa: f64,
     poisson_ratio: f64,
     density_kg_per_m3: f64,
-    tangential_stiffness_kg_per_s2: f64,
-    damping_time_s: f64,
+}
+
+impl Ball {
+    fn sphere(self) -> Result<Sphere, InvalidValue> {
+        let Self { radius_m, young_modulus_pa, poisson_ratio, density_kg_per_m3 } = self;
+        let expected = "a finite number above 0";
+        let positive = density_kg_per_m3 > 0.0 && density_kg_per_m3.is_finite();
+        InvalidValue::check("density_kg_per_m3", density_kg_per_m3, expected, positive)?;
+        let material = Material { young_modulus_pa, poisson_ratio, density_kg_per_m3 };
+        Ok(Sphere::homogeneous(radius_m, &material))
+    }
+}
+
+impl Bodies {
+    /// The pair that they are, with the friction `mu`.
+    fn pair(self, mu: f64) -> Result<BodyPair, InvalidValue> {
+        let Self { one, other, tangential_stiffness_kg_per_s2, damping_time_s } = self;
+        let surface = Surface { friction: mu, tangential_stiffness_kg_per_s2, damping_time_s };
+        let other = Body::Sphere(other.unwrap_or(one).sphere()?);
+        BodyPair::new(&one.sphere()?, &other, &surface)
+    }
 }
 
 /// Collisions over a plane.
@@ -77,13 +107,16 @@ impl Spheres {
     pub fn new(request: &SpheresRequest) -> Result<Self, Value> {
         let SpheresRequest { axes, damping, tangential_damping, mu, alpha, .. } = *request;
         let refused = |error: InvalidValue| json!({ "error": error.to_string() });
-        for (name, value, most) in [("mu", mu, f64::INFINITY), ("alpha", alpha, 1.0)] {
-            let expected = "a number above 0, and alpha at most 1";
-            let accepted = value > 0.0 && value.is_finite() && value <= most;
-            InvalidValue::check(name, value, expected, accepted).map_err(refused)?;
-        }
+        let expected = "a finite number above 0; without friction, 0 with the velocities as axes";
+        let least = if axes == Axes::Velocities { 0.0 } else { f64::MIN_POSITIVE };
+        let accepted = mu >= least && mu.is_finite();
+        InvalidValue::check("mu", mu, expected, accepted).map_err(refused)?;
+        let accepted = alpha > 0.0 && alpha <= 1.0;
+        InvalidValue::check("alpha", alpha, "above 0 to 1", accepted).map_err(refused)?;
         let Some(preset) = presets::find(&request.law) else {
-            return Err(json!({ "error": format!("no law is called {}", request.law) }));
+            let unknown = || format!("no law is called {}", request.law);
+            let why = presets::refusal(&request.law).map_or_else(unknown, str::to_owned);
+            return Err(json!({ "error": why }));
         };
         let reduction = Reduction { mu, alpha };
         let units = match axes {
@@ -92,19 +125,9 @@ impl Spheres {
             Axes::AxisRatio => [1.0 / alpha, reduction.psi(1.0)],
             Axes::Velocities => {
                 let bodies = request.bodies.ok_or_else(|| json!({ "error": "no bodies" }))?;
-                let material = Material {
-                    young_modulus_pa: bodies.young_modulus_pa,
-                    poisson_ratio: bodies.poisson_ratio,
-                    density_kg_per_m3: bodies.density_kg_per_m3,
-                };
-                let surface = Surface {
-                    friction: mu,
-                    tangential_stiffness_kg_per_s2: bodies.tangential_stiffness_kg_per_s2,
-                    damping_time_s: bodies.damping_time_s,
-                };
-                let pair = BodyPair::equal_spheres(bodies.radius_m, &material, &surface);
-                let pair = pair.map_err(refused)?;
-                let tangential = mu * mu / pair.alpha;
+                let pair = bodies.pair(mu).map_err(refused)?;
+                let unit = pair.friction_unit();
+                let tangential = unit * unit / pair.alpha;
                 return Ok(Self { parameters: Parameters::Velocities(pair), tangential });
             }
         };
@@ -194,15 +217,26 @@ impl Spheres {
         Ok(Value::Object(document))
     }
 
-    /// Appends the course at a point to `numbers`; returns the number of its moments.
+    /// Appends the course at a point to `numbers`; returns the number of its moments. It has `least`
+    /// even intervals, or as many as each swing of the spring needs to look smooth.
     pub fn course(
         &self,
         point: [f64; 2],
-        intervals: usize,
+        least: usize,
         numbers: &mut Vec<f64>,
     ) -> Result<usize, String> {
+        const OF_A_SWING: f64 = 24.0;
+        const MOST: f64 = 2000.0;
         let contact = self.contact(point).map_err(|error| error.to_string())?;
-        let history = Collider::default().history(contact).map_err(|error| error.to_string())?;
+        let history = if contact.obeys_paper() {
+            History::exact(contact)
+        } else {
+            Collider::default().history(contact)
+        };
+        let history = history.map_err(|error| error.to_string())?;
+        let swings = history.duration() * contact.kappa().sqrt() / std::f64::consts::TAU;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to MOST")]
+        let intervals = least.max((OF_A_SWING * swings).min(MOST) as usize);
         for Moment { snapshot, regime, side, .. } in history.moments(intervals) {
             let sliding = match (regime, side) {
                 (Regime::Stick, _) => 0.0,

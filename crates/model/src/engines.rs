@@ -197,15 +197,13 @@ impl Engine {
         Ok(statistics)
     }
 
-    /// The collision of `contact` with its course. An integrator computes both with one run; the
-    /// course of the exact solution comes from [`Self::history`].
+    /// The collision of `contact` with its course. An integrator computes both with one run.
     ///
     /// The collision equals the result of [`Self::collide`], bit for bit. The integrator's work
     /// belongs to the run that keeps the course, which repeats some steps.
     ///
     /// # Errors
-    /// As [`Self::collide`]; or the course, which is always integrated, is out of the integrator's
-    /// range or takes more than [`History::MOST_STEPS`] steps.
+    /// As [`Self::collide`] and [`Self::history`].
     pub fn followed(
         &self,
         contact: Contact,
@@ -219,19 +217,34 @@ impl Engine {
             }
             Self::Exact | Self::Auto => {
                 let (collision, statistics) = self.collide(contact)?;
-                return Ok((collision, statistics, self.history(contact)?));
+                let history = if contact.obeys_paper() {
+                    History::of_exact(collision.clone())?
+                } else {
+                    self.history(contact)?
+                };
+                return Ok((collision, statistics, history));
             }
         };
         collision.require_finite()?;
         Ok((collision, Some(statistics), history))
     }
 
-    /// The course of the collision of `contact` in time. For [`Self::Exact`] and [`Self::Auto`],
-    /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
+    /// The course of the collision of `contact` in time. For [`Self::Exact`] and [`Self::Auto`] it
+    /// is the exact solution of the paper's law; that of another law is integrated by
+    /// Dormand–Prince 8(5,3) at its default tolerances.
+    ///
+    /// ```
+    /// use stickslip_model::{Contact, Engine};
+    ///
+    /// let (collision, _, history) = Engine::Auto.followed(Contact::new(63.0, 0.5, 0.1)?)?;
+    /// let end = history.at(history.duration()).ok_or("outside the contact")?;
+    /// assert!((end.velocity - collision.final_velocity).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
-    /// [`CollisionError`]: the contact is out of the integrator's range, or the
-    /// integration fails.
+    /// [`CollisionError`]: the contact is out of the engine's range, the integration fails, or there
+    /// are more than [`History::MOST_STEPS`] steps or switches.
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {
@@ -240,6 +253,7 @@ impl Engine {
             Self::Dopri5(Tolerances { rtol, atol }) => {
                 Collider::with_tolerances(Dopri5, rtol, atol).history(contact)
             }
+            Self::Exact | Self::Auto if contact.obeys_paper() => History::exact(contact),
             Self::Exact | Self::Auto => Collider::default().history(contact),
         }
     }

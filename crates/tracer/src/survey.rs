@@ -21,6 +21,7 @@ use crate::window::{Point, Window};
 ///
 /// ```
 /// use std::convert::Infallible;
+/// use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 /// use stickslip_tracer::{Family, FreeRun, Point, Progress, Surveyor, Watch, Window};
 ///
 /// /// A guard that fires above a parabola.
@@ -46,6 +47,15 @@ use crate::window::{Point, Window};
 /// let surveyor = Surveyor { watch: Watch::from(&report), ..Surveyor::default() };
 /// let atlas = surveyor.atlas(&Parabola, &window)?;
 /// assert!(atlas.agrees());
+///
+/// // This one shows each curve as soon as it has been followed.
+/// let shown = AtomicUsize::new(0);
+/// let show = |points: &[Point]| {
+///     shown.fetch_add(usize::from(points.len() > 1), Relaxed);
+/// };
+/// let watch = Watch::SILENT.showing(&show);
+/// Surveyor { watch, ..Surveyor::default() }.atlas(&Parabola, &window)?;
+/// assert!(shown.load(Relaxed) >= atlas.plane.curves().len());
 ///
 /// // This one is cancelled at once, and says so.
 /// let watch = Watch::SILENT.cancelled_by(&|| true);

@@ -28,6 +28,9 @@ pub enum Progress {
 /// Receives the reports of a computation.
 pub type Report<'a> = &'a (dyn Fn(Progress) + Sync);
 
+/// Receives curves, as points.
+type Show<'a> = &'a (dyn Fn(&[Point]) + Sync);
+
 /// A caller that watches a computation, and may cancel it.
 ///
 /// A report, or a reference to a closure that takes [`Progress`], is a watch that never cancels.
@@ -35,11 +38,12 @@ pub type Report<'a> = &'a (dyn Fn(Progress) + Sync);
 pub struct Watch<'a> {
     report: Report<'a>,
     cancelled: &'a (dyn Fn() -> bool + Sync),
+    curve: Option<Show<'a>>,
 }
 
 impl Watch<'static> {
     /// A watch that ignores all reports and never cancels.
-    pub const SILENT: Self = Self { report: &|_| {}, cancelled: &|| false };
+    pub const SILENT: Self = Self { report: &|_| {}, cancelled: &|| false, curve: None };
 }
 
 impl<'a> Watch<'a> {
@@ -54,6 +58,20 @@ impl<'a> Watch<'a> {
     #[must_use]
     pub fn cancelled_by(self, cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { cancelled, ..self }
+    }
+
+    /// The same watch, which is shown each curve when it has been followed, as points between which
+    /// straight lines look smooth. A later stage may cut the curve, or drop it.
+    #[must_use]
+    pub fn showing(self, curve: Show<'a>) -> Self {
+        Self { curve: Some(curve), ..self }
+    }
+
+    /// Shows a curve.
+    pub(crate) fn show(&self, points: impl FnOnce() -> Vec<Point>) {
+        if let Some(curve) = self.curve {
+            curve(&points());
+        }
     }
 
     /// The same watch without reports.

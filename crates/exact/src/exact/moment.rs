@@ -98,6 +98,8 @@ impl Spring {
 pub trait Motion: Copy + Debug {
     /// |v − v₀|, with v₀ at the end of the contact from which the moment is counted.
     fn deficit(&self) -> f64;
+    /// Compression, its rate and the normal force.
+    fn normal(&self) -> [f64; 3];
     /// The spring's limit L.
     fn limit(&self, spring: &Spring) -> f64;
     /// dL/dt.

@@ -115,6 +115,58 @@ fn a_collision_with_its_course_is_the_same_collision() {
 }
 
 #[test]
+fn the_course_of_the_exact_engine_is_that_of_the_integrator() {
+    let mut random = fastrand::Rng::with_seed(5);
+    let mut moments = 0;
+    for case in 0..120 {
+        let mut uniform = |low: f64, high: f64| low + (high - low) * random.f64();
+        let (kappa, psi) = (10.0_f64.powf(uniform(-2.0, 3.0)), uniform(0.01, 3.0));
+        let damping = if case % 2 == 0 { 0.0 } else { 10.0_f64.powf(uniform(-4.0, 1.0)) };
+        let contact = Contact::new(kappa, psi, damping).unwrap();
+        let (collision, _, exact) = Engine::Auto.followed(contact).unwrap();
+        let integrated = Collider::default().history(contact).unwrap();
+        assert!((exact.duration() / integrated.duration() - 1.0).abs() < 1e-11);
+        // Switches are those of the collision, and what ends there is what begins.
+        let times: Vec<_> = exact.phases().skip(1).map(|phase| phase.begin().time).collect();
+        assert_eq!(times, collision.switches.iter().map(|it| it.time).collect::<Vec<_>>());
+        let spring = 1e-10 / kappa.min(kappa.sqrt());
+        let same = |one: Snapshot, other: Snapshot| {
+            for (one, other, error) in [
+                (one.compression, other.compression, 1e-10),
+                (one.normal_velocity, other.normal_velocity, 1e-10),
+                (one.normal_force, other.normal_force, 1e-10),
+                (one.spring, other.spring, spring),
+                (one.tangential_force, other.tangential_force, kappa * spring),
+                (one.velocity, other.velocity, 1e-10),
+            ] {
+                assert!((one - other).abs() < error, "{contact:?} {one} {other}");
+            }
+        };
+        let phases: Vec<_> = exact.phases().collect();
+        for pair in phases.windows(2) {
+            same(pair[0].end(), pair[1].begin());
+        }
+        let last = phases[phases.len() - 1].end();
+        assert!((last.velocity - collision.final_velocity).abs() < 1e-13, "{contact:?}");
+        if exact.phases().len() == integrated.phases().len() {
+            for index in 0..=40 {
+                let time = exact.duration() * (f64::from(index) / 40.0);
+                // The integrator's end may be a rounding before.
+                let Some(other) = integrated.at(time) else { continue };
+                same(exact.at(time).unwrap(), other);
+                moments += 1;
+            }
+        }
+        for phase in exact.phases() {
+            let samples: Vec<_> = phase.samples(9).collect();
+            assert!(samples.len() == 10 || phase.begin().time == phase.end().time);
+            assert!(samples.is_sorted_by(|one, next| one.time <= next.time));
+        }
+    }
+    assert!(moments > 100 * 41, "{moments}");
+}
+
+#[test]
 fn samples_are_in_order_and_of_the_requested_number() {
     let history = history(63.0, 0.5, 0.0);
     for phase in history.phases() {

@@ -122,6 +122,10 @@ impl NormalMotion {
 }
 
 impl Motion for NormalMotion {
+    fn normal(&self) -> [f64; 3] {
+        [self.u * self.u, self.v, self.u * self.u * self.u]
+    }
+
     fn deficit(&self) -> f64 {
         self.deficit
     }

@@ -99,6 +99,10 @@ pub struct NormalMotion {
 }
 
 impl Motion for NormalMotion {
+    fn normal(&self) -> [f64; 3] {
+        [self.u * self.u, self.v, self.force]
+    }
+
     fn deficit(&self) -> f64 {
         self.deficit
     }

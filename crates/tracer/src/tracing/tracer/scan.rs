@@ -127,7 +127,9 @@ impl<F: Family> Tracer<'_, F> {
             return Ok(());
         }
         let sides = seed.labels.clone();
-        self.builder.add_curve(Curve { margin: seed.margin.clone(), sides, nodes, ends });
+        let curve = Curve { margin: seed.margin.clone(), sides, nodes, ends };
+        self.runs.watch.show(|| curve.polyline(&self.window.extent()));
+        self.builder.add_curve(curve);
         Ok(())
     }
 
