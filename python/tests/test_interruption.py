@@ -3,12 +3,14 @@
 import signal
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import stickslip
 
+ORBITS = Path(__file__).parents[2] / "examples" / "orbits"
 OSCILLATOR = "state x = 1\nstate v = 0\nx' = v\nv' = -1e6*x\nend = {}"
 
 # Each takes minutes, so that a deaf one would not come back within the time of the tests.
@@ -26,6 +28,10 @@ LONG: dict[str, Callable[[], object]] = {
     "sensitivities": lambda: stickslip.system(
         "parameter k = 1e6\n" + OSCILLATOR.format(1e6).replace("1e6*x", "k*x")
     ).sensitivities("k"),
+    "settle": lambda: stickslip.read(ORBITS / "oscillator.slip").orbit(settle=3e6),
+    "diagram": lambda: stickslip.read(ORBITS / "ball.slip").diagram(
+        "a", np.linspace(0.01, 0.03, 3000), "period", time=3000
+    ),
     "solve_many": lambda: stickslip.solve_many(
         stickslip.system(OSCILLATOR.format(1000)), initial={"x": np.linspace(1, 2, 1000)}
     ),

@@ -1,5 +1,7 @@
 //! Periodic orbits of systems of formulas, as the JSON of their documents.
 
+use std::sync::Arc;
+
 use pyo3::prelude::*;
 use serde_json::json;
 use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
@@ -11,6 +13,7 @@ use stickslip_orbits::{
 };
 use stickslip_tracer::Point;
 
+use crate::background::watched;
 use crate::failure::{bad_input, failed};
 use crate::formulas::FormulaSystem;
 
@@ -25,13 +28,13 @@ type DiagramColumn = (f64, Points, Option<String>);
 
 /// The periodic orbits of a system.
 #[pyclass(frozen, module = "stickslip._native")]
-pub struct OrbitSystem(Orbits);
+pub struct OrbitSystem(Arc<Orbits>);
 
 #[pymethods]
 impl OrbitSystem {
     #[new]
     fn new(system: &FormulaSystem) -> PyResult<Self> {
-        Orbits::new(&system.system).map(Self).map_err(bad_input)
+        Orbits::new(&system.system).map(|it| Self(Arc::new(it))).map_err(bad_input)
     }
 
     fn find(
@@ -42,10 +45,12 @@ impl OrbitSystem {
         itinerary: Vec<String>,
         durations: Option<Vec<f64>>,
     ) -> PyResult<String> {
-        let itinerary: Vec<&str> = itinerary.iter().map(String::as_str).collect();
-        let (itinerary, durations) = (&itinerary[..], durations.as_deref());
-        let guess = Guess { itinerary, durations, ..guess(&start) };
-        self.written(py.detach(|| self.0.find(&parameters, &guess)))
+        let found = self.on_thread(py, move |orbits| {
+            let itinerary: Vec<&str> = itinerary.iter().map(String::as_str).collect();
+            let (itinerary, durations) = (&itinerary[..], durations.as_deref());
+            orbits.find(&parameters, &Guess { itinerary, durations, ..guess(&start) })
+        })?;
+        self.written(found)
     }
 
     fn settled(
@@ -55,12 +60,13 @@ impl OrbitSystem {
         start: Start,
         time: f64,
     ) -> PyResult<String> {
-        self.written(py.detach(|| self.0.settled(&parameters, &guess(&start), time)))
+        let work = move |orbits: &Orbits| orbits.settled(&parameters, &guess(&start), time);
+        self.written(self.on_thread(py, work)?)
     }
 
     fn continued(&self, py: Python<'_>, orbit: &str, parameters: Vec<f64>) -> PyResult<String> {
         let orbit = self.read(orbit)?;
-        self.written(py.detach(|| self.0.continued(&orbit, &parameters)))
+        self.written(self.on_thread(py, move |orbits| orbits.continued(&orbit, &parameters))?)
     }
 
     fn switched(
@@ -72,7 +78,8 @@ impl OrbitSystem {
         aside: f64,
     ) -> PyResult<String> {
         let (special, beside) = (self.read_special(special)?, self.read(beside)?);
-        self.written(py.detach(|| self.0.switched(&special, &beside, parameter, aside)))
+        let work = move |orbits: &Orbits| orbits.switched(&special, &beside, parameter, aside);
+        self.written(self.on_thread(py, work)?)
     }
 
     fn branch(
@@ -89,7 +96,8 @@ impl OrbitSystem {
         let usual = BranchOptions::default();
         let first_step = usual.first_step.min(longest_step);
         let options = BranchOptions { first_step, longest_step, most_points, ..usual };
-        let found = py.detach(|| self.0.branch(&orbit, parameter, [low, high], &options));
+        let work = move |orbits: &Orbits| orbits.branch(&orbit, parameter, [low, high], &options);
+        let found = self.on_thread(py, work)?;
         let document = Document::of_branch(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
     }
@@ -106,7 +114,8 @@ impl OrbitSystem {
         let usual = BranchOptions::default();
         let first_step = usual.first_step.min(longest_step);
         let options = BranchOptions { first_step, longest_step, ..usual };
-        let found = py.detach(|| self.0.curve(&special, parameters, window, &options));
+        let work = move |orbits: &Orbits| orbits.curve(&special, parameters, window, &options);
+        let found = self.on_thread(py, work)?;
         let document = Document::of_curve(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
     }
@@ -122,8 +131,9 @@ impl OrbitSystem {
     ) -> PyResult<OrbitMap> {
         let orbit = self.read(orbit)?;
         let options = RegionOptions { cells, ..RegionOptions::default() };
-        let found = py.detach(|| self.0.regions(&orbit, parameters, window, &options));
-        let atlas = found.map_err(exception)?;
+        let centre = orbit.clone();
+        let work = move |orbits: &Orbits| orbits.regions(&centre, parameters, window, &options);
+        let atlas = self.on_thread(py, work)?.map_err(exception)?;
         let document = Document::of_regions(&self.0, "", (&orbit, parameters), &atlas, &options);
         OrbitMap::new(document)
     }
@@ -134,11 +144,13 @@ impl OrbitSystem {
         py: Python<'_>,
         parameters: Vec<f64>,
         start: Start,
-        rule: &str,
+        rule: String,
         span: (f64, f64),
     ) -> PyResult<Points> {
-        let section = Section { rule, skip: span.0, time: span.1 };
-        let found = py.detach(|| self.0.section(&parameters, &guess(&start), &section));
+        let found = self.on_thread(py, move |orbits| {
+            let section = Section { rule: &rule, skip: span.0, time: span.1 };
+            orbits.section(&parameters, &guess(&start), &section)
+        })?;
         Ok(pairs(found.map_err(exception)?))
     }
 
@@ -149,12 +161,13 @@ impl OrbitSystem {
         parameters: Vec<f64>,
         start: Start,
         over: (usize, Vec<f64>),
-        rule: &str,
+        rule: String,
         span: (f64, f64),
     ) -> PyResult<Vec<Vec<DiagramColumn>>> {
-        let section = Section { rule, skip: span.0, time: span.1 };
-        let over = (over.0, &over.1[..]);
-        let found = py.detach(|| self.0.diagram(&parameters, &guess(&start), over, &section));
+        let found = self.on_thread(py, move |orbits| {
+            let section = Section { rule: &rule, skip: span.0, time: span.1 };
+            orbits.diagram(&parameters, &guess(&start), (over.0, &over.1[..]), &section)
+        })?;
         let columns = |columns: Vec<Column>| {
             columns.into_iter().map(|it| (it.value, pairs(it.points), it.trouble)).collect()
         };
@@ -170,7 +183,8 @@ impl OrbitSystem {
         span: (f64, f64),
     ) -> PyResult<(Vec<f64>, f64, usize)> {
         let (skip, time) = span;
-        let found = py.detach(|| self.0.exponents(&parameters, &guess(&start), skip, time));
+        let work = move |orbits: &Orbits| orbits.exponents(&parameters, &guess(&start), skip, time);
+        let found = self.on_thread(py, work)?;
         found.map(|it| (it.values, it.spread, it.events)).map_err(exception)
     }
 
@@ -184,9 +198,10 @@ impl OrbitSystem {
         values: (Vec<f64>, Vec<f64>),
         time: f64,
     ) -> PyResult<(Vec<String>, Vec<i64>)> {
-        let values = [&values.0[..], &values.1];
-        let found =
-            py.detach(|| self.0.basins(&parameters, &guess(&start), components, values, time));
+        let found = self.on_thread(py, move |orbits| {
+            let values = [&values.0[..], &values.1];
+            orbits.basins(&parameters, &guess(&start), components, values, time)
+        })?;
         let found = found.map_err(bad_input)?;
         let system = self.0.system();
         let mode = |mode: usize| system.modes[mode].name.clone();
@@ -213,6 +228,16 @@ impl OrbitSystem {
 }
 
 impl OrbitSystem {
+    /// What `work` makes on threads of its own, which Ctrl-C does not wait for.
+    fn on_thread<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Orbits) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let orbits = Arc::clone(&self.0);
+        watched(py, 0, None, move |_| work(&orbits))
+    }
+
     /// An orbit from its record, solved for again.
     fn read(&self, orbit: &str) -> PyResult<Orbit> {
         let record: OrbitRecord = serde_json::from_str(orbit).map_err(bad_input)?;
