@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use stickslip_number::Number;
+use stickslip_solver::sensitivity::ReadableTransition;
 use stickslip_solver::{Direction, Guard, InvalidValue, ReadableSystem, Schedule, State};
 
 use crate::graph::{Binary, Formula, Graph, Unary};
@@ -176,6 +177,19 @@ where
     fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
         let clock = self.system.clock(mode, guard, &self.parameters);
         clock.map_or(Schedule::NEVER, |[period, phase]| Schedule::every(period, phase))
+    }
+}
+
+/// Its runs have derivatives by the state
+/// ([`sensitivities`](stickslip_solver::sensitivity::sensitivities)). Those by parameters are those
+/// of its formulas.
+impl<S, const N: usize, const G: usize, const P: usize> ReadableTransition<N, G>
+    for ValuedSystem<'_, S, P>
+where
+    S: NativeSystem<N, G, P>,
+{
+    fn reset<T: Number>(&self, mode: S::Mode, guard: usize, s: T, y: &[T; N]) -> [T; N] {
+        self.system.transition(mode, guard, &self.parameters.map(T::from), s, y).state
     }
 }
 
