@@ -60,7 +60,7 @@ pub struct ModeNumber(usize);
 /// let start = DynamicStart { mode, s: 0.0, state: &[20.0, 20.0, 20.5] };
 /// let end = run_dynamic(Dop853, &rooms, start, 0.1, &Options::default(), &mut ())?.finished()?;
 /// // The warmest room has arrived at 21 degrees after ln (9.5/9) = 0.054.
-/// assert_eq!(*rooms.on(end.mode), [true, true, false]);
+/// assert_eq!(*rooms.on(end.mode), [true, false, false]);
 /// # Ok::<(), stickslip_solver::RunError>(())
 /// ```
 #[derive(Debug)]
