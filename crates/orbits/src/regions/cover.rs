@@ -279,7 +279,12 @@ impl<'a> Cover<'a> {
                 return at_target(&last.place.lerp(&turn.place, part));
             }
             last = next;
-            if along.is_at_end(&last) {
+            let at = along.value(&last.place);
+            let near = 1e-12 * (target - value).abs();
+            if (at - value).abs() <= near {
+                return Ok(None);
+            }
+            if (at - target).abs() <= near {
                 return at_target(&last.place);
             }
             step = (1.5 * step).min(self.options.longest_step);
