@@ -246,7 +246,10 @@ impl Along<'_> {
 
 /// Conditions of rules by mode and place, compiled when they are first needed.
 #[derive(Default)]
-pub(crate) struct Watches(RefCell<HashMap<(usize, usize), Option<Rc<Watched>>>>);
+pub(crate) struct Watches(RefCell<HashMap<(usize, usize), SharedWatch>>);
+
+/// What is compiled for a rule, unless it has no condition.
+type SharedWatch = Option<Rc<Watched>>;
 
 /// The condition of a rule.
 struct Watched {

@@ -12,7 +12,7 @@ use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::newton::correct;
-use crate::orbit::{Orbit, Verdict};
+use crate::orbit::{Orbit, Segment, Verdict};
 
 /// Two orbits at one point are one if their states differ by less than this part of their size.
 const SAME: f64 = 1e-7;
@@ -344,7 +344,8 @@ pub(super) fn is_same(one: &Orbit, other: &Orbit) -> bool {
     are_near(one, other, SAME)
 }
 
-/// Whether states and durations differ by less than a part of their sizes.
+/// Whether states and durations differ by less than a part of their sizes, perhaps from another
+/// segment on.
 pub(super) fn are_near(one: &Orbit, other: &Orbit, part: f64) -> bool {
     let n = one.segments.first().map_or(0, |it| it.state.len());
     let mut sizes = vec![0.0_f64; n];
@@ -352,15 +353,16 @@ pub(super) fn are_near(one: &Orbit, other: &Orbit, part: f64) -> bool {
         crate::equations::enlarge(&mut sizes, &segment.state);
         crate::equations::enlarge(&mut sizes, &segment.end);
     }
-    one.segments.len() == other.segments.len()
-        && one.segments.iter().zip(&other.segments).all(|(one, other)| {
-            let states = one.state.iter().zip(&other.state).zip(&sizes);
-            let mut states = states.map(|((x, y), size)| (x - y).abs() <= part * size);
-            one.leg == other.leg && states.all(|near| near)
+    let m = one.segments.len();
+    let near = |one: &Segment, other: &Segment, period: f64| {
+        let states = one.state.iter().zip(&other.state).zip(&sizes);
+        one.leg == other.leg
+            && (one.duration - other.duration).abs() <= part * period
+            && states.into_iter().all(|((x, y), size)| (x - y).abs() <= part * size)
+    };
+    let own = |i: usize, shift: usize| (&one.segments[i], &other.segments[(i + shift) % m]);
+    m == other.segments.len()
+        && (0..m).any(|shift| {
+            (0..m).map(|i| own(i, shift)).all(|(segment, other)| near(segment, other, one.period))
         })
-        && one
-            .segments
-            .iter()
-            .zip(&other.segments)
-            .all(|(segment, other)| (segment.duration - other.duration).abs() <= part * one.period)
 }
