@@ -12,9 +12,10 @@ use nalgebra::{DVector, Vector2};
 use stickslip_expression::InvalidValue;
 use stickslip_tracer::{Cubic, Node};
 
-use super::change::{Margin, Watches};
+use super::change::Margin;
 use super::point::{Along, Point};
 use super::test::{Test, has_torus};
+use super::watches::Watches;
 use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use stickslip_tracer::Point;
 
 use super::{FollowedOrbits, RegionOptions};
-use crate::branch::change::Watches;
 use crate::branch::point::Along;
+use crate::branch::watches::Watches;
 use crate::branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
-use crate::equations::{Draft, Equations};
+use crate::equations::{Draft, Equations, enlarge};
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::newton::correct;
@@ -31,6 +31,8 @@ pub(super) struct Cover<'a> {
     pub lost: Vec<Point>,
     /// The values of each parameter that are followed.
     lines: [Vec<f64>; 2],
+    /// The largest values of components: an orbit from which one goes on may have less.
+    sizes: Vec<f64>,
     options: BranchOptions,
 }
 
@@ -66,7 +68,8 @@ impl<'a> Cover<'a> {
         });
         let (branches, lost) = (Vec::new(), Vec::new());
         let options = options.branch;
-        let mut cover = Self { orbits, parameters, window, branches, lost, lines, options };
+        let sizes = vec![0.0; orbits.system.components.len()];
+        let mut cover = Self { orbits, parameters, window, branches, lost, lines, sizes, options };
         // The first branch has to begin.
         cover.branch(1, orbit)?;
         let mut waiting: Waiting = vec![(0, orbit.clone()), (1, orbit.clone())];
@@ -77,6 +80,11 @@ impl<'a> Cover<'a> {
             let places = waiting.iter().map(|(_, orbit)| cover.place(orbit));
             let places: Vec<Point> = places.collect();
             cover.lost.extend(places);
+        }
+        for orbit in cover.branches.iter().flat_map(|it| &it.branch.points) {
+            for segment in &orbit.segments {
+                enlarge(&mut cover.sizes, &segment.state);
+            }
         }
         Ok(cover)
     }
@@ -231,7 +239,8 @@ impl<'a> Cover<'a> {
         let Orbits { system, options, .. } = self.orbits;
         let (draft, [low, high]) = (orbit.draft(), self.window[over]);
         let active = [(parameter, high - low)];
-        let equations = &Equations::new(system, draft.clone(), &active, options)?;
+        let equations = Equations::new(system, draft.clone(), &active, options)?;
+        let equations = &equations.enlarged(&self.sizes);
         let (range, judged) = ([value.min(target), value.max(target)], false);
         let along = Along {
             orbits: self.orbits,
@@ -350,8 +359,8 @@ pub(super) fn are_near(one: &Orbit, other: &Orbit, part: f64) -> bool {
     let n = one.segments.first().map_or(0, |it| it.state.len());
     let mut sizes = vec![0.0_f64; n];
     for segment in &one.segments {
-        crate::equations::enlarge(&mut sizes, &segment.state);
-        crate::equations::enlarge(&mut sizes, &segment.end);
+        enlarge(&mut sizes, &segment.state);
+        enlarge(&mut sizes, &segment.end);
     }
     let m = one.segments.len();
     let near = |one: &Segment, other: &Segment, period: f64| {
