@@ -62,26 +62,26 @@ class OrbitRegions(Shown):
     boundaries: list[OrbitBoundary]
     tolerance: float
     objection: str | None
-    _native: _native.OrbitMap = field(repr=False)
+    _map: _native.OrbitMap = field(repr=False)
 
     def at(self, x: float, y: float) -> tuple[int, ...] | None:
         """The orbits that the system follows at a point, as `OrbitRegion.orbits` has them; None on
         a boundary, outside the window, and in doubt.
         """
-        found = self._native.at(_number(x, "x"), _number(y, "y"))
+        found = self._map.at(_number(x, "x"), _number(y, "y"))
         return None if found is None else tuple(found)
 
     def document(self) -> dict[str, Any]:
         """The regions with names, as the program writes them."""
-        return dict(json.loads(self._native.text))
+        return dict(json.loads(self._map.text))
 
     def save(self, path: str | Path) -> None:
         """Writes the regions to a JSON file, which `read_orbit_regions` reads."""
-        Path(path).write_text(self._native.text, encoding="utf-8")
+        Path(path).write_text(self._map.text, encoding="utf-8")
 
     def svg(self, *, title: str = "orbits that the system follows") -> str:
         """The picture of the regions."""
-        return self._native.svg(title)
+        return self._map.svg(title)
 
     def save_svg(self, path: str | Path) -> None:
         """Writes the picture to a file."""

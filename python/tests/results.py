@@ -185,7 +185,11 @@ MADE: dict[str, Callable[[], Any]] = {
     "Orbit": lambda: relay().orbit(itinerary=["down", "up"]),
     "OrbitSegment": lambda: of("Orbit").segments[0],
     "OrbitRegions": lambda: table().orbit_regions(
-        table().orbit(itinerary=["period", "bounce"]), ("a", "r"), (0.01, 0.03), (0.65, 0.75), cells=1
+        table().orbit(itinerary=["period", "bounce"]),
+        ("a", "r"),
+        (0.01, 0.03),
+        (0.65, 0.75),
+        cells=1,
     ),
     "OrbitRegion": lambda: of("OrbitRegions").regions[0],
     "OrbitBoundary": lambda: of("OrbitRegions").boundaries[0],

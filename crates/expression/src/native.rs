@@ -49,7 +49,9 @@ use crate::system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
 ///     fn guards(&self, mode: Push) -> [(&str, Guard); 1] {
 ///         [(if mode == Push::Up { "down" } else { "up" }, Guard::new(Direction::Below))]
 ///     }
-///     fn guard_values<T: Number>(&self, mode: Push, width: &[T; 1], _time: T, y: &[T; 1]) -> [T; 1] {
+///     fn guard_values<T: Number>(
+///         &self, mode: Push, width: &[T; 1], _time: T, y: &[T; 1],
+///     ) -> [T; 1] {
 ///         [width[0] + if mode == Push::Up { -y[0] } else { y[0] }]
 ///     }
 ///     fn transition<T: Number>(

@@ -4,17 +4,19 @@
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
-//! `meet` where branches meet, and `change` where the verdict changes. `curve` follows special
-//! orbits over two parameters, and `switched` goes over to another branch.
+//! `meet` where branches meet, and `change` where the verdict changes, by conditions that `watches`
+//! has. `curve` follows special orbits over two parameters, and `switched` goes over to another
+//! branch.
 
 mod borders;
-pub(crate) mod change;
+mod change;
 pub(crate) mod curve;
 mod locate;
 mod meet;
 pub(crate) mod point;
 mod switched;
 mod test;
+pub(crate) mod watches;
 
 use stickslip_expression::InvalidValue;
 
@@ -22,8 +24,8 @@ use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
-use change::Watches;
 use point::{Along, Point};
+use watches::Watches;
 
 /// How a branch is followed. Lengths are in unknowns of size 1: states over their largest value,
 /// times over the period, the parameter over the length of its range.

@@ -257,7 +257,7 @@ impl Document<CurveRecord> {
         let meeting = |it: &Meeting| {
             let Meeting { kind, segment, behind, tangent, .. } = *it;
             let (name, orbit) = (it.name.clone(), OrbitRecord::new(system, &it.orbit));
-            Meeting { name, kind, segment, behind, tangent, orbit }
+            Meeting { name, kind, tangent, segment, behind, orbit }
         };
         let curve = SpecialCurve {
             kind: curve.kind,

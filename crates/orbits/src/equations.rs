@@ -144,6 +144,15 @@ impl Equations {
         Ok(equations)
     }
 
+    /// The same equations, in which the sizes of components are no less than these.
+    pub fn enlarged(mut self, least: &[f64]) -> Self {
+        for place in 0..self.legs.len() * self.n {
+            let size = self.sizes[place].max(least[place % self.n]);
+            (self.sizes[place], self.rows[place]) = (size, size);
+        }
+        self
+    }
+
     /// What happens where a rule acts.
     pub fn event(
         system: &System,

@@ -188,18 +188,17 @@ fn draw(
         (None, Some(second)) => (name(first), name(second)),
         (None, None) => (format!("{}, once before", name(first)), name(first)),
     };
-    let series = match axis {
-        Some(_) => over(found, first),
-        None => {
-            let points = found.iter().flatten().flat_map(|Column { points, .. }| {
-                let before = std::iter::once(None).chain(points.iter().map(Some));
-                points.iter().zip(before).filter_map(move |(point, before)| match second {
-                    Some(second) => Some((point.state[first], point.state[second])),
-                    None => Some((before?.state[first], point.state[first])),
-                })
-            });
-            vec![dots("", points.collect(), BLUE)]
-        }
+    let series = if axis.is_some() {
+        over(found, first)
+    } else {
+        let points = found.iter().flatten().flat_map(|Column { points, .. }| {
+            let before = std::iter::once(None).chain(points.iter().map(Some));
+            points.iter().zip(before).filter_map(move |(point, before)| match second {
+                Some(second) => Some((point.state[first], point.state[second])),
+                None => Some((before?.state[first], point.state[first])),
+            })
+        });
+        vec![dots("", points.collect(), BLUE)]
     };
     let range = |of: fn(&(f64, f64)) -> f64| {
         let values = series.iter().flat_map(|it| &it.points).map(of);

@@ -1,15 +1,10 @@
 //! Where a system begins or ceases to follow the orbits of a branch.
 
-use std::cell::RefCell;
-use std::collections::HashMap;
-use std::rc::Rc;
-
-use stickslip_expression::{Compiled, Inputs, Program, Rule, System, Trigger};
 use stickslip_solver::{Direction, EmbeddedPair};
 
 use super::point::{Along, Point};
 use super::{SpecialKind, SpecialOrbit};
-use crate::equations::{Equations, Event, rate};
+use crate::equations::{Equations, Event};
 use crate::error::OrbitError;
 use crate::itinerary::{Leg, modes_after};
 use crate::orbit::{Obstacle, Verdict};
@@ -241,42 +236,6 @@ impl Along<'_> {
             .iter()
             .filter_map(|event| self.condition(point, (segment, rule), (event.s, &event.before)));
         values.map(|value| sign * value).min_by(f64::total_cmp)
-    }
-}
-
-/// Conditions of rules by mode and place, compiled when they are first needed.
-#[derive(Default)]
-pub(crate) struct Watches(RefCell<HashMap<(usize, usize), Option<Rc<Watched>>>>);
-
-/// The condition of a rule.
-struct Watched {
-    direction: Direction,
-    value: Program,
-    /// The system with one rule in the mode, which acts at the extrema of the condition.
-    extrema: Compiled,
-}
-
-impl Watches {
-    fn of(&self, system: &System, mode: usize, rule: usize) -> Option<Rc<Watched>> {
-        let mut known = self.0.borrow_mut();
-        known.entry((mode, rule)).or_insert_with(|| Watched::new(system, mode, rule)).clone()
-    }
-}
-
-impl Watched {
-    fn new(system: &System, mode: usize, rule: usize) -> Option<Rc<Self>> {
-        let Trigger::When(guard, direction) = system.modes[mode].rules[rule].trigger else {
-            return None;
-        };
-        let components = system.components.len();
-        let inputs = Inputs { components, parameters: system.parameters.len(), fixed: true };
-        let value = Program::compile(&system.graph, &[guard], inputs);
-        let mut alone = system.clone();
-        let slopes = alone.modes[mode].slopes.clone();
-        let rate = rate(&mut alone.graph, guard, &slopes);
-        alone.modes[mode].rules = vec![Rule::new(Trigger::When(rate, Direction::Either))];
-        let extrema = alone.compile().ok()?;
-        Some(Rc::new(Self { direction, value, extrema }))
     }
 }
 

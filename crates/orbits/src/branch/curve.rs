@@ -12,14 +12,16 @@ use nalgebra::{DVector, Vector2};
 use stickslip_expression::InvalidValue;
 use stickslip_tracer::{Cubic, Node};
 
-use super::change::{Margin, Watches};
+use super::change::Margin;
 use super::point::{Along, Point};
 use super::test::{Test, has_torus};
+use super::watches::Watches;
 use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
+use meetings::Met;
 
 /// Halvings of a step for closer points, at most.
 const DEEPEST: usize = 10;
@@ -256,7 +258,7 @@ impl Follower<'_> {
                 && last.tangent.dot(&start.tangent) > 0.9;
             // A curve of tori ends at its resonances.
             let ends = self.special.kind == SpecialKind::NeimarkSacker && !has_torus(&next.point);
-            let resonance = ends.then(|| meetings.iter().position(|it| it.is_resonance()));
+            let resonance = ends.then(|| meetings.iter().position(Met::is_resonance));
             if let Some(place) = resonance {
                 match place {
                     Some(place) => meetings.truncate(place + 1),

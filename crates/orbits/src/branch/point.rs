@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::borders::null_vectors;
-use super::change::Watches;
+use super::watches::Watches;
 use crate::equations::{Draft, Equations, Evaluation};
 use crate::error::OrbitError;
 use crate::find::Orbits;

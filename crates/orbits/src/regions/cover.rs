@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use stickslip_tracer::Point;
 
 use super::{FollowedOrbits, RegionOptions};
-use crate::branch::change::Watches;
 use crate::branch::point::Along;
+use crate::branch::watches::Watches;
 use crate::branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
-use crate::equations::{Draft, Equations};
+use crate::equations::{Draft, Equations, enlarge};
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::newton::correct;
-use crate::orbit::{Orbit, Verdict};
+use crate::orbit::{Orbit, Segment, Verdict};
 
 /// Two orbits at one point are one if their states differ by less than this part of their size.
 const SAME: f64 = 1e-7;
@@ -31,6 +31,8 @@ pub(super) struct Cover<'a> {
     pub lost: Vec<Point>,
     /// The values of each parameter that are followed.
     lines: [Vec<f64>; 2],
+    /// The largest values of components: an orbit from which one goes on may have less.
+    sizes: Vec<f64>,
     options: BranchOptions,
 }
 
@@ -66,7 +68,8 @@ impl<'a> Cover<'a> {
         });
         let (branches, lost) = (Vec::new(), Vec::new());
         let options = options.branch;
-        let mut cover = Self { orbits, parameters, window, branches, lost, lines, options };
+        let sizes = vec![0.0; orbits.system.components.len()];
+        let mut cover = Self { orbits, parameters, window, branches, lost, lines, sizes, options };
         // The first branch has to begin.
         cover.branch(1, orbit)?;
         let mut waiting: Waiting = vec![(0, orbit.clone()), (1, orbit.clone())];
@@ -77,6 +80,11 @@ impl<'a> Cover<'a> {
             let places = waiting.iter().map(|(_, orbit)| cover.place(orbit));
             let places: Vec<Point> = places.collect();
             cover.lost.extend(places);
+        }
+        for orbit in cover.branches.iter().flat_map(|it| &it.branch.points) {
+            for segment in &orbit.segments {
+                enlarge(&mut cover.sizes, &segment.state);
+            }
         }
         Ok(cover)
     }
@@ -231,7 +239,8 @@ impl<'a> Cover<'a> {
         let Orbits { system, options, .. } = self.orbits;
         let (draft, [low, high]) = (orbit.draft(), self.window[over]);
         let active = [(parameter, high - low)];
-        let equations = &Equations::new(system, draft.clone(), &active, options)?;
+        let equations = Equations::new(system, draft.clone(), &active, options)?;
+        let equations = &equations.enlarged(&self.sizes);
         let (range, judged) = ([value.min(target), value.max(target)], false);
         let along = Along {
             orbits: self.orbits,
@@ -279,7 +288,12 @@ impl<'a> Cover<'a> {
                 return at_target(&last.place.lerp(&turn.place, part));
             }
             last = next;
-            if along.is_at_end(&last) {
+            let at = along.value(&last.place);
+            let near = 1e-12 * (target - value).abs();
+            if (at - value).abs() <= near {
+                return Ok(None);
+            }
+            if (at - target).abs() <= near {
                 return at_target(&last.place);
             }
             step = (1.5 * step).min(self.options.longest_step);
@@ -339,23 +353,25 @@ pub(super) fn is_same(one: &Orbit, other: &Orbit) -> bool {
     are_near(one, other, SAME)
 }
 
-/// Whether states and durations differ by less than a part of their sizes.
+/// Whether states and durations differ by less than a part of their sizes, perhaps from another
+/// segment on.
 pub(super) fn are_near(one: &Orbit, other: &Orbit, part: f64) -> bool {
     let n = one.segments.first().map_or(0, |it| it.state.len());
     let mut sizes = vec![0.0_f64; n];
     for segment in &one.segments {
-        crate::equations::enlarge(&mut sizes, &segment.state);
-        crate::equations::enlarge(&mut sizes, &segment.end);
+        enlarge(&mut sizes, &segment.state);
+        enlarge(&mut sizes, &segment.end);
     }
-    one.segments.len() == other.segments.len()
-        && one.segments.iter().zip(&other.segments).all(|(one, other)| {
-            let states = one.state.iter().zip(&other.state).zip(&sizes);
-            let mut states = states.map(|((x, y), size)| (x - y).abs() <= part * size);
-            one.leg == other.leg && states.all(|near| near)
+    let m = one.segments.len();
+    let near = |one: &Segment, other: &Segment, period: f64| {
+        let states = one.state.iter().zip(&other.state).zip(&sizes);
+        one.leg == other.leg
+            && (one.duration - other.duration).abs() <= part * period
+            && states.into_iter().all(|((x, y), size)| (x - y).abs() <= part * size)
+    };
+    let own = |i: usize, shift: usize| (&one.segments[i], &other.segments[(i + shift) % m]);
+    m == other.segments.len()
+        && (0..m).any(|shift| {
+            (0..m).map(|i| own(i, shift)).all(|(segment, other)| near(segment, other, one.period))
         })
-        && one
-            .segments
-            .iter()
-            .zip(&other.segments)
-            .all(|(segment, other)| (segment.duration - other.duration).abs() <= part * one.period)
 }

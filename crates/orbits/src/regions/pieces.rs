@@ -93,7 +93,9 @@ pub(super) fn draw(
     });
     let mut all: Vec<(SpecialCurve, &SpecialOrbit)> = Vec::new();
     for (known, lost) in followed.collect::<Vec<_>>() {
-        lost.into_iter().for_each(|point| sheet.doubt(point));
+        for point in lost {
+            sheet.doubt(point);
+        }
         all.extend(known);
     }
     // Of curves that are one, as where a segment vanishes at each fold, the first kind is drawn.
@@ -350,13 +352,12 @@ impl Sheet<'_> {
         let first: Vec<Node> = own.nodes[..=k].iter().copied().chain([middle]).collect();
         let second: Vec<Node> =
             [middle].into_iter().chain(own.nodes[k + 1..].iter().copied()).collect();
-        let parts = match own.ends {
-            Some([from, to]) => vec![(first, [from, vertex]), (second, [vertex, to])],
+        let parts = if let Some([from, to]) = own.ends {
+            vec![(first, [from, vertex]), (second, [vertex, to])]
+        } else {
             // A closed curve begins and ends there.
-            None => {
-                let nodes = second.into_iter().chain(first.into_iter().skip(1)).collect();
-                vec![(nodes, [vertex, vertex])]
-            }
+            let nodes = second.into_iter().chain(first.into_iter().skip(1)).collect();
+            vec![(nodes, [vertex, vertex])]
         };
         let made = parts.into_iter().map(|(mut nodes, ends)| {
             nodes.dedup_by(|later, earlier| later.point == earlier.point);

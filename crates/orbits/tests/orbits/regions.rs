@@ -61,7 +61,7 @@ fn an_impact_oscillator_has_its_regions() {
     let orbits = impact::orbits();
     let closed = Closed { w: 0.8, a: 0.5, ..Closed::EXAMPLE };
     let orbit = impact::near(&orbits, &closed, closed.speeds()[0], 1e-6).expect("an orbit");
-    // The fold meets the graze at w = 0.99875. The whole of 0.6 to 1.4 is an example of `validation`.
+    // The fold meets the graze at w = 0.99875.
     let window = [[0.7, 1.1], [0.05, 0.6]];
     let verify = VerifyOptions { random_points: 50, near_points: 1, ..options().verify };
     let options = RegionOptions { cells: 2, verify, ..options() };

@@ -58,7 +58,11 @@ impl Follower<'_> {
         let length = from.tangent.dot(&(&to.point.place - &from.point.place));
         let mut found: Vec<(f64, Met)> = Vec::new();
         for sought in self.sought(&from.tracked, from) {
-            let values = [from, to].map(|station| self.sought_value(&sought, from, station));
+            let values = [from, to].map(|station| {
+                // What is zero at every orbit does not change.
+                let value = self.sought_value(&sought, from, station)?;
+                (value.abs() >= self.least(&sought, station)?).then_some(value)
+            });
             let [Some(one), Some(other)] = values else { continue };
             if (one < 0.0) == (other < 0.0) || other == 0.0 {
                 continue;
@@ -75,7 +79,7 @@ impl Follower<'_> {
             }
             let (kind, segment) = match &sought {
                 Sought::Test(SpecialKind::NeimarkSacker, ..)
-                    if self.special.kind == SpecialKind::Grazing
+                    if !matches!(self.special.kind, SpecialKind::Fold | SpecialKind::Flip)
                         && !super::has_torus(&station.point) =>
                 {
                     continue;
@@ -141,15 +145,20 @@ impl Follower<'_> {
         all
     }
 
+    /// What is as small as this is zero by rounding.
+    fn least(&self, sought: &Sought, station: &Station) -> Option<f64> {
+        match sought {
+            Sought::Margin(_, margin) => {
+                Some(ZERO * self.along.margin_size(margin, &station.point)?)
+            }
+            _ => Some(0.0),
+        }
+    }
+
     fn sought_value(&self, sought: &Sought, from: &Station, station: &Station) -> Option<f64> {
         match sought {
             Sought::Test(_, _, test) => test.value(&self.along, &station.point),
-            Sought::Margin(_, margin) => {
-                let value = self.along.margin(margin, &station.point)?;
-                let size = self.along.margin_size(margin, &station.point)?;
-                // What is zero at every orbit does not change.
-                (value.abs() > ZERO * size).then_some(value)
-            }
+            Sought::Margin(_, margin) => self.along.margin(margin, &station.point),
             Sought::Cusp => {
                 let along = self.plane_tangent(&from.tangent);
                 Some(along.dot(&self.plane_tangent(&station.tangent)))
