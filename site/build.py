@@ -20,6 +20,7 @@ import tempfile
 import time
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote, unquote
 
 import nbformat
@@ -82,6 +83,8 @@ def main() -> int:
             return 1
         if rustdoc:
             shutil.copytree(rustdoc, built / "rust")
+            for package in packages():
+                adapt_front(package, built)
         broken = broken_links(built)
         print(*broken, sep="\n", end="\n" if broken else "")
         if broken:
@@ -236,8 +239,8 @@ def python_reference() -> dict[str, str]:
     return pages
 
 
-def rust_reference(rustdoc: Path | None) -> str:
-    """The page of the crates."""
+def packages() -> list[dict[str, Any]]:
+    """The packages of the repository, by their names."""
     metadata = json.loads(
         subprocess.run(
             ["cargo", "metadata", "--no-deps", "--format-version", "1"],
@@ -246,8 +249,44 @@ def rust_reference(rustdoc: Path | None) -> str:
             check=True,
         ).stdout
     )
+    return sorted(metadata["packages"], key=lambda package: str(package["name"]))
+
+
+def adapt_front(package: dict[str, Any], built: Path) -> None:
+    """The front page of a crate is its README, whose links lead to files beside the manifest. They
+    are made to lead to the pages of the site, and to copies of other files."""
+    page = built / "rust" / package["name"].replace("-", "_") / "index.html"
+    if not page.exists():
+        return
+    folder = Path(package["manifest_path"]).parent
+
+    def address(match: re.Match[str]) -> str:
+        kind, file, anchor = match[1], unquote(match[2]), match[3] or ""
+        source = (folder / file).resolve()
+        if ":" in file or (page.parent / file).exists() or not source.exists():
+            return match[0]
+        if source.is_dir():
+            source /= "README.md"
+            if not source.exists():
+                # A folder without a page of its own is nothing that the site has.
+                return ""
+        target = built / place(source)
+        if source.suffix in {".md", ".ipynb"}:
+            target = target.with_suffix(".html")
+        elif not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, target)
+        return f'{kind}="{os.path.relpath(target, page.parent)}{anchor}"'
+
+    text = page.read_text(encoding="utf-8")
+    text = re.sub(r'(href|src)="([^"#]+)(#[^"]*)?"', address, text)
+    page.write_text(text, encoding="utf-8")
+
+
+def rust_reference(rustdoc: Path | None) -> str:
+    """The page of the crates."""
     rows = []
-    for package in sorted(metadata["packages"], key=lambda package: package["name"]):
+    for package in packages():
         readme = Path(package["manifest_path"]).with_name("README.md").relative_to(ROOT)
         library = package["name"].replace("-", "_")
         name = f"[{package['name']}](../{readme})" if (ROOT / readme).exists() else package["name"]
@@ -302,8 +341,11 @@ class Page(HTMLParser):
 
 
 def broken_links(site: Path) -> list[str]:
-    """Links of a built site to files or anchors of it that are not there."""
-    own = {path: Page(path) for path in site.rglob("*.html") if "rust" not in path.parts}
+    """Links of a built site to files or anchors of it that are not there. Of the crates, those of
+    the front pages are looked at; `cargo doc` checks the others."""
+    fronts = site.glob("rust/*/index.html")
+    pages = (path for path in site.rglob("*.html") if "rust" not in path.parts)
+    own = {path: Page(path) for path in (*pages, *fronts)}
     broken = []
     for path, page in own.items():
         for link in page.links:

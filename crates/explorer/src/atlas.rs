@@ -19,7 +19,8 @@ use crate::{itinerary, page};
 /// that of a screen.
 fn options(shorter: f64, effort: Effort) -> AtlasOptions {
     /// The part of the shorter side by which a curve may be off. A picture needs 1e-4, but regions
-    /// narrower than a curve's error would not be found, and a trace of that accuracy takes as long.
+    /// narrower than a curve's error would not be found, and a trace of that accuracy takes as
+    /// long.
     const ACCURACY: f64 = 1e-8;
     let interpolation = (ACCURACY * shorter).clamp(1e-11, 1e-2);
     let trace = TraceOptions { interpolation, max_curves: 1500, ..TraceOptions::default() };

@@ -5,8 +5,8 @@
 //! [`counts_ptr`], [`codes_ptr`] and [`numbers_ptr`], which stay valid until the next call. There
 //! is one state for each thread, and each worker of the page has a module of its own.
 //!
-//! The one import is `env.curve`, by which the page is shown each curve of an atlas as soon as it has
-//! been followed.
+//! The one import is `env.curve`, by which the page is shown each curve of an atlas as soon as it
+//! has been followed.
 //!
 //! Errors are answers with a field `error`. Nothing here panics on any request.
 //!

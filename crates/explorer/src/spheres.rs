@@ -217,8 +217,8 @@ impl Spheres {
         Ok(Value::Object(document))
     }
 
-    /// Appends the course at a point to `numbers`; returns the number of its moments. It has `least`
-    /// even intervals, or as many as each swing of the spring needs to look smooth.
+    /// Appends the course at a point to `numbers`; returns the number of its moments. It has
+    /// `least` even intervals, or as many as each swing of the spring needs to look smooth.
     pub fn course(
         &self,
         point: [f64; 2],

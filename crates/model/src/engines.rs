@@ -243,8 +243,8 @@ impl Engine {
     /// ```
     ///
     /// # Errors
-    /// [`CollisionError`]: the contact is out of the engine's range, the integration fails, or there
-    /// are more than [`History::MOST_STEPS`] steps or switches.
+    /// [`CollisionError`]: the contact is out of the engine's range, the integration fails, or
+    /// there are more than [`History::MOST_STEPS`] steps or switches.
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {

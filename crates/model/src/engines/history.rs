@@ -1,8 +1,8 @@
 //! The course of a collision in time, at every moment and not at its switches alone.
 //!
 //! A collision has no list of samples. The integrator's dense output is kept instead, or the
-//! switches between which the exact solution is known, so that a picture can ask for as many moments
-//! of a phase as it needs.
+//! switches between which the exact solution is known, so that a picture can ask for as many
+//! moments of a phase as it needs.
 
 mod closed;
 mod followed;
@@ -229,9 +229,9 @@ impl PhaseHistory<'_> {
     /// is 0, or if the phase is too short for a step. Where the force ends before the overlap,
     /// there is one more at the end of the force.
     ///
-    /// They are evenly spaced in a coordinate in which the motion is smooth: in s, where dt = 2√x ds,
-    /// in that of another law, or in φ, where t = t_c sin² φ, for the exact engine. In time they are
-    /// closer to each other near the ends of contact.
+    /// They are evenly spaced in a coordinate in which the motion is smooth: in s, where dt = 2√x
+    /// ds, in that of another law, or in φ, where t = t_c sin² φ, for the exact engine. In time
+    /// they are closer to each other near the ends of contact.
     pub fn samples(&self, intervals: usize) -> impl Iterator<Item = Snapshot> + use<> {
         self.course.samples(self.index, intervals).into_iter()
     }
