@@ -254,7 +254,7 @@ fn points_without_result_are_drawn_grey() {
 fn a_picture_is_refused_before_anything_is_done() {
     let workspace = Workspace::new();
     for line in [
-        "collide --kappa 63 --psi 0.5 --plot a.pdf",
+        "collide --kappa 63 --psi 0.5 --plot a.ps",
         "collide --kappa 63 --psi 0.5 --plot svg",
         "map --kappa 0:20 --psi 0:2 --size 9x7 --out m.npz --plot m.jpeg",
     ] {

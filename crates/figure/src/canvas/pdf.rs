@@ -7,7 +7,7 @@ use flate2::write::ZlibEncoder;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref};
 use png::{Decoder, Transformations};
-use resvg::tiny_skia::{PathSegment, Transform};
+use resvg::tiny_skia::{self, PathSegment, Transform};
 use resvg::usvg::{
     Fill, FillRule, Group, Image, ImageKind, LineCap, LineJoin, Node, Paint, Path, Stroke,
 };
@@ -85,9 +85,21 @@ fn packed(data: &[u8]) -> Vec<u8> {
 }
 
 impl Page {
-    /// Draws a group. Those of an [`Svg`] are opaque and have no masks and filters; what is clipped
-    /// is an image, by the rectangle that it fills.
+    /// Draws a group. Those of an [`Svg`] are opaque and have no masks and filters.
     fn group(&mut self, group: &Group) {
+        if let Some(clip) = group.clip_path() {
+            self.content.save_state();
+            let place = group.abs_transform().pre_concat(clip.transform());
+            for node in clip.root().children() {
+                if let Node::Path(path) = node
+                    && let place = place.pre_concat(path.abs_transform())
+                    && let Some(outline) = path.data().clone().transform(place)
+                {
+                    self.outline(&outline);
+                }
+            }
+            self.content.clip_nonzero().end_path();
+        }
         for node in group.children() {
             match node {
                 Node::Group(group) => self.group(group),
@@ -95,6 +107,9 @@ impl Page {
                 Node::Path(path) => self.path(path),
                 Node::Image(image) => self.image(image),
             }
+        }
+        if group.clip_path().is_some() {
+            self.content.restore_state();
         }
     }
 
@@ -106,9 +121,23 @@ impl Page {
         if let Some(Paint::Color(colour)) = path.fill().map(Fill::paint) {
             self.content.set_fill_rgb(share(colour.red), share(colour.green), share(colour.blue));
         }
+        self.outline(path.data());
+        match (path.fill().map(Fill::rule), path.stroke()) {
+            (Some(FillRule::NonZero), Some(_)) => self.content.fill_nonzero_and_stroke(),
+            (Some(FillRule::EvenOdd), Some(_)) => self.content.fill_even_odd_and_stroke(),
+            (Some(FillRule::NonZero), None) => self.content.fill_nonzero(),
+            (Some(FillRule::EvenOdd), None) => self.content.fill_even_odd(),
+            (None, Some(_)) => self.content.stroke(),
+            (None, None) => self.content.end_path(),
+        };
+        self.content.restore_state();
+    }
+
+    /// Goes along an outline.
+    fn outline(&mut self, outline: &tiny_skia::Path) {
         // PDF has curves of the third degree only.
         let mut last = (0.0, 0.0);
-        for segment in path.data().segments() {
+        for segment in outline.segments() {
             match segment {
                 PathSegment::MoveTo(to) => self.content.move_to(to.x, to.y),
                 PathSegment::LineTo(to) => self.content.line_to(to.x, to.y),
@@ -136,15 +165,6 @@ impl Page {
                 last = (to.x, to.y);
             }
         }
-        match (path.fill().map(Fill::rule), path.stroke()) {
-            (Some(FillRule::NonZero), Some(_)) => self.content.fill_nonzero_and_stroke(),
-            (Some(FillRule::EvenOdd), Some(_)) => self.content.fill_even_odd_and_stroke(),
-            (Some(FillRule::NonZero), None) => self.content.fill_nonzero(),
-            (Some(FillRule::EvenOdd), None) => self.content.fill_even_odd(),
-            (None, Some(_)) => self.content.stroke(),
-            (None, None) => self.content.end_path(),
-        };
-        self.content.restore_state();
     }
 
     fn prepare(&mut self, stroke: &Stroke) {
