@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -62,7 +63,14 @@ class OrbitRegions(Shown):
     boundaries: list[OrbitBoundary]
     tolerance: float
     objection: str | None
-    _map: _native.OrbitMap = field(repr=False)
+    _text: str = field(repr=False)
+
+    @cached_property
+    def _map(self) -> _native.OrbitMap:
+        return _native.OrbitMap.read(self._text)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._text,)
 
     def at(self, x: float, y: float) -> tuple[int, ...] | None:
         """The orbits that the system follows at a point, as `OrbitRegion.orbits` has them; None on
@@ -73,11 +81,11 @@ class OrbitRegions(Shown):
 
     def document(self) -> dict[str, Any]:
         """The regions with names, as the program writes them."""
-        return dict(json.loads(self._map.text))
+        return dict(json.loads(self._text))
 
     def save(self, path: str | Path) -> None:
         """Writes the regions to a JSON file, which `read_orbit_regions` reads."""
-        Path(path).write_text(self._map.text, encoding="utf-8")
+        Path(path).write_text(self._text, encoding="utf-8")
 
     def svg(self, *, title: str = "orbits that the system follows") -> str:
         """The picture of the regions."""
@@ -96,7 +104,11 @@ def read_orbit_regions(path: str | Path) -> OrbitRegions:
 
     Raises ValueError if the file has no regions of an orbit.
     """
-    return _of(_native.OrbitMap.read(Path(path).read_text(encoding="utf-8")))
+    return _restored(Path(path).read_text(encoding="utf-8"))
+
+
+def _restored(text: str) -> OrbitRegions:
+    return _of(_native.OrbitMap.read(text))
 
 
 def regions(
@@ -126,5 +138,5 @@ def _of(native: _native.OrbitMap) -> OrbitRegions:
     ]
     one, other = native.axes
     return OrbitRegions(
-        (one, other), regions, boundaries, native.tolerance, native.objection, native
+        (one, other), regions, boundaries, native.tolerance, native.objection, native.text
     )
