@@ -45,7 +45,7 @@ pub use invalid::{GivenValue, InvalidValue};
 /// assert_eq!([0.9, 1.2].map(|time| pulse(time, 1.0)), [1.0, 0.0]);
 /// ```
 ///
-/// The solver needs it for doubles, [`Dual64`](num_dual::Dual64) and [`Enclosure`]. Other types may
+/// The solver needs it for doubles, [`Dual64`] and [`Enclosure`]. Other types may
 /// implement it; functions that come later have provided versions.
 pub trait Number:
     Copy
