@@ -10,7 +10,7 @@
 
 pub(crate) mod at_switches;
 pub(crate) mod backwards;
-mod both;
+pub(crate) mod both;
 mod by_name;
 pub(crate) mod clock;
 mod closures;

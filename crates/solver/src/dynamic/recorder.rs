@@ -3,6 +3,7 @@
 use crate::dynamic::dense::DynamicDense;
 use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicSwitch};
 use crate::hybrid::{Grazing, Pole, Preempted, Rest};
+use crate::runs::both::tell_both;
 
 /// An accepted step that is kept, with its dense output.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,29 +154,8 @@ where
         self.0.on_switch(event);
         self.1.on_switch(event);
     }
-    fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
-        self.0.on_grazing(grazing);
-        self.1.on_grazing(grazing);
-    }
-    fn on_pole(&mut self, pole: &Pole<Mode>) {
-        self.0.on_pole(pole);
-        self.1.on_pole(pole);
-    }
-    fn on_preempted(&mut self, preempted: &Preempted<Mode>) {
-        self.0.on_preempted(preempted);
-        self.1.on_preempted(preempted);
-    }
-    fn on_rest(&mut self, rest: &Rest<Mode>) {
-        self.0.on_rest(rest);
-        self.1.on_rest(rest);
-    }
-    fn forget(&mut self, switches: usize) {
-        self.0.forget(switches);
-        self.1.forget(switches);
-    }
-    fn stops(&self, s: f64) -> bool {
-        self.0.stops(s) || self.1.stops(s)
-    }
+    tell_both!();
+
     fn on_segment(&mut self, mode: Mode, dense: &DynamicDense<'_>) {
         if A::WANTS_SEGMENTS {
             self.0.on_segment(mode, dense);

@@ -3,6 +3,41 @@
 use crate::hybrid::{Grazing, Observer, Pole, Preempted, Rest, SwitchEvent};
 use crate::method::{Dense, State};
 
+/// What two observers are told in the same way, whatever the dimension of the run.
+macro_rules! tell_both {
+    () => {
+        fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
+            self.0.on_grazing(grazing);
+            self.1.on_grazing(grazing);
+        }
+
+        fn on_pole(&mut self, pole: &Pole<Mode>) {
+            self.0.on_pole(pole);
+            self.1.on_pole(pole);
+        }
+
+        fn on_preempted(&mut self, preempted: &Preempted<Mode>) {
+            self.0.on_preempted(preempted);
+            self.1.on_preempted(preempted);
+        }
+
+        fn on_rest(&mut self, rest: &Rest<Mode>) {
+            self.0.on_rest(rest);
+            self.1.on_rest(rest);
+        }
+
+        fn forget(&mut self, switches: usize) {
+            self.0.forget(switches);
+            self.1.forget(switches);
+        }
+
+        fn stops(&self, s: f64) -> bool {
+            self.0.stops(s) || self.1.stops(s)
+        }
+    };
+}
+pub(crate) use tell_both;
+
 /// Two observers of one run. The first one is called first, and the run stops if either of them
 /// stops it. Segments go only to observers that want them.
 ///
@@ -29,34 +64,7 @@ where
         self.1.on_switch(event);
     }
 
-    fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
-        self.0.on_grazing(grazing);
-        self.1.on_grazing(grazing);
-    }
-
-    fn on_pole(&mut self, pole: &Pole<Mode>) {
-        self.0.on_pole(pole);
-        self.1.on_pole(pole);
-    }
-
-    fn on_preempted(&mut self, preempted: &Preempted<Mode>) {
-        self.0.on_preempted(preempted);
-        self.1.on_preempted(preempted);
-    }
-
-    fn on_rest(&mut self, rest: &Rest<Mode>) {
-        self.0.on_rest(rest);
-        self.1.on_rest(rest);
-    }
-
-    fn forget(&mut self, switches: usize) {
-        self.0.forget(switches);
-        self.1.forget(switches);
-    }
-
-    fn stops(&self, s: f64) -> bool {
-        self.0.stops(s) || self.1.stops(s)
-    }
+    tell_both!();
 
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
         if A::WANTS_SEGMENTS {
