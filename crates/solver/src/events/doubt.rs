@@ -1,11 +1,11 @@
 //! By how much rounding may move the place of an event, and hide what a guard is there.
 
-use crate::events::along_step::{rounding, scales};
+use crate::events::along_step::{rounding, rounding_within, scales};
 use crate::events::arrival::HERE;
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
 use crate::events::isolate::noise;
-use crate::events::phase::NEAR_ZERO;
+use crate::events::phase::near_zero;
 use crate::method::{StepOf, Store};
 use crate::system::System;
 
@@ -62,7 +62,7 @@ impl<S: System> Examination<'_, S> {
     /// The part of a guard's largest value below which it may be zero. In a phase that is hardly
     /// longer than rounding of time, it hides more.
     pub(crate) fn near_zero(&self, elapsed: f64) -> f64 {
-        NEAR_ZERO.max(16.0 * self.drift(elapsed) / elapsed)
+        near_zero(self.drift(elapsed), elapsed)
     }
 
     /// The slope of a guard where it leaves what rounding hides. Over a longer way, it may be quite
@@ -77,15 +77,25 @@ impl<S: System> Examination<'_, S> {
         let (mut moved, mut rate) = (self.room.state(), self.room.state());
         system.field(at.0, s, y, &mut rate);
         self.statistics.field += 1;
-        let mut slope = guess.abs();
-        let mut reach = LEAVES * hidden / slope;
-        while reach > 0.0 && reach <= FARTHEST * self.usual {
+        let mut difference = |reach: f64| {
             let mut value = |ahead: f64| {
                 S::State::shifted(&mut moved, y, &rate, ahead);
                 self.statistics.guards += 1;
                 self.room.value(system, at, s + ahead, &moved)
             };
-            let seen = ((value(reach) - value(-reach)) / (2.0 * reach)).abs();
+            ((value(reach) - value(-reach)) / (2.0 * reach)).abs()
+        };
+        let (mut slope, longest) = (guess.abs(), FARTHEST * self.usual);
+        // Where rounding has hidden all change on the way of the guess, a longer one shows it.
+        let mut reach = elapsed;
+        while slope == 0.0 && reach > 0.0 {
+            let (seen, last) = (difference(reach), 16.0 * reach > self.usual);
+            slope = if last || seen * reach > LEAVES * hidden { seen } else { 0.0 };
+            reach *= if last { 0.0 } else { 16.0 };
+        }
+        reach = LEAVES * hidden / slope;
+        while reach > 0.0 && reach <= longest {
+            let seen = difference(reach);
             // NaN ends the search.
             if seen.is_nan() || seen >= 0.5 * slope {
                 break;
@@ -106,10 +116,15 @@ impl<S: System> Examination<'_, S> {
         (step, elapsed, y): (&StepOf<S::State>, f64, &S::State),
     ) -> f64 {
         let (system, at, s) = (self.system, (self.phase.mode, guard), step.s + elapsed);
-        let (mut scale, mut slope) = (self.room.state(), self.room.state());
+        let mut scale = self.room.state();
         let s_scale = scales(step, s, y, &mut scale);
         let (hidden, count) = rounding(system, at, (s, y), (s_scale, &scale), self.room);
         self.statistics.guards += count;
+        if S::READABLE {
+            self.room.give(scale);
+            return hidden.max(rounding_within(system, at, (s, y)));
+        }
+        let mut slope = self.room.state();
         system.field(at.0, s, y, &mut slope);
         self.statistics.field += 1;
         let (room, statistics, moved) = (&mut *self.room, &mut *self.statistics, &mut scale);

@@ -41,6 +41,9 @@ pub(crate) struct Event<S: System> {
     pub(crate) state: S::State,
     /// The latest time at which errors may put a guard of this instant, if there are several.
     pub(crate) latest: Option<f64>,
+    /// The time of the first event of this instant that has been noted and not taken back, infinite
+    /// if there is none.
+    pub(crate) since: f64,
     /// The absolute value of the guard at that state, which is zero up to rounding.
     pub(crate) residual: f64,
     /// The time from the start of the step to a place behind the event, up to which the guard does
@@ -61,13 +64,18 @@ impl<S: System> Event<S> {
     ) -> Self {
         let simultaneous = List::of(count, false);
         let crossed = only(count, guard, crossed);
-        let (latest, residual, beyond) = (None, 0.0, elapsed);
-        Self { guard, crossed, simultaneous, elapsed, state, latest, residual, beyond, step }
+        let (latest, since, residual, beyond) = (None, f64::INFINITY, 0.0, elapsed);
+        Self { guard, crossed, simultaneous, elapsed, state, latest, since, residual, beyond, step }
     }
 
     /// How the guard that acts first crosses zero.
     pub(crate) fn own(&self) -> Crossed {
         self.crossed[self.guard].unwrap_or(Crossed::AT_ONCE)
+    }
+
+    /// Lets another guard of the instant act first, which has this value there in size.
+    pub(crate) fn led_by(&mut self, guard: usize, residual: f64) {
+        (self.guard, self.residual) = (guard, residual);
     }
 
     /// Takes further guards of the same instant, which act after this one's.

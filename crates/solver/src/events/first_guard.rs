@@ -233,7 +233,7 @@ impl<S: System> Examination<'_, S> {
                         reached.push(other);
                     }
                     if self.precedes(other.guard, event.guard) {
-                        event.guard = other.guard;
+                        event.led_by(other.guard, other.residual);
                     }
                 }
             }
@@ -267,10 +267,10 @@ impl<S: System> Examination<'_, S> {
                 let (theta, Bracket { low, high, .. }) = (event.elapsed / h, crossing.bracket);
                 // In the bracket it crosses zero once, so that its sign shows on which side it is.
                 let before = crossing.sign * search.there[guard];
-                if (low - theta) * h > self.together(event.elapsed, event.elapsed)
+                let later = (low - theta) * h > self.together(event.elapsed, event.elapsed)
                     || high >= theta
-                        && before > self.near_zero(event.elapsed) * largest::<S>(guard, values)
-                {
+                        && before > self.near_zero(event.elapsed) * largest::<S>(guard, values);
+                if later {
                     search.open[guard] = false;
                     continue;
                 }
@@ -370,8 +370,9 @@ impl<S: System> Examination<'_, S> {
     }
 
     fn located(&mut self, event: &Event<S>) -> Located {
-        let (guard, crossed) = (event.guard, event.own());
-        Located { guard, elapsed: event.elapsed, error: self.error_of(event), crossed }
+        let error = self.error_of(event);
+        let &Event { guard, elapsed, residual, .. } = event;
+        Located { guard, elapsed, error, residual, crossed: event.own() }
     }
 
     /// Adds the guards that cross zero behind the end of a step of size `h`, but within rounding of
@@ -400,7 +401,7 @@ impl<S: System> Examination<'_, S> {
                 }
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {
-                    event.guard = guard;
+                    event.led_by(guard, there[guard].abs());
                 }
             }
         }
@@ -471,6 +472,8 @@ struct Located {
     guard: usize,
     elapsed: f64,
     error: f64,
+    /// What the guard is at that place instead of zero, in size.
+    residual: f64,
     crossed: Crossed,
 }
 

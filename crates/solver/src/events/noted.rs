@@ -90,6 +90,7 @@ impl<S: System> Examination<'_, S> {
                 let slope = note.crossed[guard].map_or(f64::INFINITY, |crossed| crossed.slope);
                 note.flatness = phase.flatness(guard, slope);
             }
+            event.since = event.since.min(note.s);
             true
         });
         *self.notes = notes;

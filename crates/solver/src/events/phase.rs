@@ -14,6 +14,13 @@ use crate::system::{PerGuard, System};
 /// The part of its largest value that a guard may have where it has just fired.
 pub(crate) const NEAR_ZERO: f64 = 1e-6;
 
+/// The part of its largest value that a guard may have where it has just fired, after a time on
+/// which rounding may have moved the event by `drift`. In a phase that is hardly longer, it hides
+/// more.
+pub(crate) fn near_zero(drift: f64, elapsed: f64) -> f64 {
+    NEAR_ZERO.max(16.0 * drift / elapsed)
+}
+
 /// The active mode, and what is known about its guards at the start of the next step.
 pub(crate) struct Phase<S: System> {
     pub(crate) mode: S::Mode,

@@ -489,6 +489,7 @@ impl<'a, S: System, O: Watcher<S>> Runner<'a, S, O> {
 
     /// Reports the events on the step that change nothing. The run may end at one of them.
     fn report_notes(&mut self) -> Option<Outcome> {
+        self.instant.note(&self.notes, self.clock.drift());
         for index in 0..self.notes.len() {
             self.tell_until(self.notes[index].s);
             let note = &self.notes[index];

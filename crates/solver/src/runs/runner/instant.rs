@@ -9,8 +9,8 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
-use crate::events::along_step::{rounding, scales};
-use crate::events::phase::NEAR_ZERO;
+use crate::events::along_step::{rounding, rounding_within, scales};
+use crate::events::phase::{NEAR_ZERO, near_zero};
 use crate::events::{Crossed, Event, Note, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
 use crate::lists::List;
@@ -41,6 +41,8 @@ pub(super) struct Instant<S: System> {
     pending: PerGuard<S, Option<Pending<S::Mode>>>,
     /// The modes in which guards have acted, and how they have crossed zero.
     acted: PerGuard<S, Option<(S::Mode, Crossed)>>,
+    /// The last events that have changed nothing: time, mode, guard, and how it has crossed zero.
+    noted: SmallVec<[(f64, S::Mode, usize, Crossed); 2]>,
     /// The state before the first transition.
     origin: S::State,
     transitions: SmallVec<[Transition<S::Mode>; 4]>,
@@ -57,6 +59,10 @@ const FAR: f64 = 1e-2;
 const CONFUSES: f64 = 16.0;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
 const HIDES: f64 = 16.0;
+/// By how much of their size components move to a place nearby, where guards are compared.
+const NEARBY: [f64; 3] = [1e-6, 1.7e-6, 2.3e-6];
+/// The size of a component that is 0.
+const TINY: f64 = 1e-6;
 /// A cycle of transitions at one instant is named if it is no longer than this.
 const LONGEST_CYCLE: usize = 8;
 
@@ -65,9 +71,23 @@ impl<S: System> Instant<S> {
         Self {
             pending: List::of(0, None),
             acted: List::of(0, None),
+            noted: SmallVec::new(),
             origin: S::State::room(n),
             transitions: SmallVec::new(),
             chain: Vec::new(),
+        }
+    }
+
+    /// Remembers events that have changed nothing on a step, and forgets those before it that
+    /// cannot be of the same instant.
+    pub(super) fn note(&mut self, notes: &[Note<S>], drift: f64) {
+        let Some(first) = notes.first() else { return };
+        self.noted.retain(|(s, ..)| *s >= first.s - HIDES * drift);
+        for note in notes {
+            let acts = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
+            self.noted.extend((0..note.crossed.parts().len()).filter(acts).map(|guard| {
+                (note.s, note.from, guard, note.crossed[guard].unwrap_or(Crossed::AT_ONCE))
+            }));
         }
     }
 
@@ -107,7 +127,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.state.set(&event.state);
         self.rest.parts_mut().fill(0.0);
         let (mode, count) = (self.phase.mode, self.phase.count());
-        let Instant { pending, acted, origin, transitions, .. } = &mut self.instant;
+        let Instant { pending, acted, noted, origin, transitions, .. } = &mut self.instant;
         pending.fit(count, None);
         acted.fit(count, None);
         if self.clock.phase > 0.0 {
@@ -117,13 +137,11 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         if transitions.is_empty() {
             origin.set(&event.state);
         }
-        // What has just been noted on this step is of this instant too.
-        let rounding = HIDES * self.clock.drift();
-        let since = self.clock.s - rounding;
-        for note in self.notes.iter().filter(|note| note.s >= since) {
-            let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
-            for guard in (0..count).filter(noted) {
-                acted[guard] = Some((mode, note.crossed[guard].unwrap_or(Crossed::AT_ONCE)));
+        // What has just been noted is of this instant too.
+        let since = event.since.min(self.clock.s - HIDES * self.clock.drift());
+        for &(s, mode, guard, crossed) in noted.iter() {
+            if s >= since && guard < count {
+                acted[guard] = Some((mode, crossed));
             }
         }
         for guard in 0..count {
@@ -272,7 +290,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
 
     /// 1 or −1 if a guard of the active mode is a guard of the mode `from`, with this sign; 0 if it
     /// is another guard. They are the same if their values are, or are opposite, where the step of
-    /// the event starts, where it ends, and in the present state.
+    /// the event starts, where it ends, in the present state, and near it.
     fn sense(&mut self, event: &Event<S>, from: S::Mode, guard: usize) -> f64 {
         let (system, s, to) = (self.system, self.clock.s, self.phase.mode);
         let direction = match self.phase.guards.parts().get(guard) {
@@ -287,9 +305,17 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             return 0.0;
         }
         let (mut old, mut new) = (self.room.row(), self.room.row());
+        // Two forms may be equal on a way, and where it jumps to. Nearby they are not.
+        let mut nearby = self.state.clone();
+        for (i, y) in nearby.parts_mut().iter_mut().enumerate() {
+            let size = y.abs().max(event.state.parts()[i].abs()).max(TINY);
+            *y += (NEARBY[i % NEARBY.len()] * size).copysign(*y);
+        }
         // It is not known before a value differs from zero.
         let mut sense = f64::NAN;
-        for (s, y) in [(event.step.s, &event.step.y0), (s, &event.state), (s, &self.state)] {
+        let places =
+            [(event.step.s, &event.step.y0), (s, &event.state), (s, &self.state), (s, &nearby)];
+        for (s, y) in places {
             system.guard_values(from, s, y, &mut old);
             system.guard_values(to, s, y, &mut new);
             self.statistics.guards += 2;
@@ -297,7 +323,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             if sense.is_nan() && known != 0.0 {
                 sense = if known == -new { -1.0 } else { 1.0 };
             }
-            let same = known == sense * new || known == 0.0 && new == 0.0;
+            let same = known == sense * new
+                || known == 0.0 && new == 0.0
+                || known.is_nan() && new.is_nan();
             if !same {
                 sense = 0.0;
                 break;
@@ -370,8 +398,10 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let left = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
         self.statistics.guards += 1;
         // The guard that has acted stands on its zero only if it was close to it.
-        let size = act.largest.max(act.crossed.slope * event.step.h);
-        let stands = !crossed.jump && (guard != act.guard || left.abs() <= NEAR_ZERO * size);
+        let h = event.step.h;
+        let size = act.largest.max(act.crossed.slope * h);
+        let near = if h > 0.0 { near_zero(self.clock.drift(), h) } else { NEAR_ZERO };
+        let stands = !crossed.jump && (guard != act.guard || left.abs() <= near * size);
         (sense != 0.0).then_some(if stands { sense * left } else { 0.0 })
     }
 
@@ -404,6 +434,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let (hidden, count) = rounding(self.system, at, (s, y), (s_scale, &scale), &mut self.room);
         self.statistics.guards += count;
         self.room.give(scale);
+        let hidden = hidden.max(rounding_within(self.system, at, (s, y)));
         if guard == event.guard { hidden.max(event.residual) } else { hidden }
     }
 
@@ -414,7 +445,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let is_edge = |it: &Pending<_>| it.guard.direction() != Direction::Below;
         loop {
             let mut next: Option<(i16, usize)> = None;
-            let waits = self.instant.pending.parts().iter().flatten().any(is_edge);
+            // Behind the end of the run, no step follows either.
+            let waits = self.instant.pending.parts().iter().flatten().any(is_edge)
+                || self.clock.is_at(self.end);
             for guard in 0..self.instant.pending.parts().len() {
                 let edge = self.instant.pending[guard].filter(is_edge);
                 let rank = match (edge, self.phase.guards.parts().get(guard).copied()) {
@@ -444,8 +477,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     }
 
     /// Whether a guard bounds the domain of the mode and is beyond zero: clearly, or where it has
-    /// just crossed zero. If another guard `waits` for its turn, one that stands on its zero and
-    /// falls counts as well, since the next step would find it too late.
+    /// just crossed zero. If another guard `waits` for its turn, or the run ends here, one that
+    /// stands on its zero and falls counts as well, since the next step would find it too late.
     fn is_violated(&mut self, event: &Event<S>, guard: usize, waits: bool) -> bool {
         let value = self.phase.values[guard];
         if self.phase.guards[guard].direction() != Direction::Below {

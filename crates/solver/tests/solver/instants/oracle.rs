@@ -410,6 +410,11 @@ impl Walk<'_> {
                 };
             }
             let idle = self.mode == from && self.y == y;
+            let moves = |i: usize| (self.y[i] - y[i]).abs() >= UNIT >> 30;
+            if !idle && self.mode == from && !(0..LINEAR).any(moves) {
+                // Rounding hides whether it changes anything.
+                return Err(Stop::Here);
+            }
             let then = Some((self.mode, self.y));
             acts.push(Act { s: self.s, guard, from, then, idle, error: (0.0, [0.0; LINEAR]) });
             for other in self.active() {
