@@ -63,30 +63,6 @@ pub(crate) fn rounding<S: System>(
     (if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }, count)
 }
 
-/// Bounds of a guard of a readable system at (`s`, `y`). They are apart by the rounding within the
-/// guard.
-fn bounds_at<S: System>(
-    system: &S,
-    (mode, guard): (S::Mode, usize),
-    (s, y): (f64, &S::State),
-) -> Interval {
-    let read = system.reads(mode);
-    let n = S::Components::count(&read, y.size());
-    let state = List::made(n, |i| Enclosure::from(y[S::Components::place(&read, i)]));
-    system.enclose(mode, Enclosure::from(s), &state)[guard].value
-}
-
-/// By how much rounding within a guard of a readable system may have moved its value at
-/// (`s`, `y`). It is 0 for a black box, and where the guard has no bounds.
-pub(crate) fn rounding_within<S: System>(
-    system: &S,
-    at: (S::Mode, usize),
-    place: (f64, &S::State),
-) -> f64 {
-    let width = if S::READABLE { bounds_at(system, at, place).width() } else { 0.0 };
-    if width.is_finite() { width } else { 0.0 }
-}
-
 /// The sign of a guard's rate at the start of `step`, by the field, or 0 if rounding hides it.
 pub(crate) fn start_rate<S: System>(
     system: &S,
@@ -344,7 +320,11 @@ impl<S: System, M: Method> Enclosed for EnclosedAlongStep<'_, S, M> {
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError> {
         let (theta, y, value) = self.along.step_to(theta)?;
         let AlongStep { system, mode, guard, sign, step, .. } = self.along;
-        let bounds = bounds_at(system, (mode, guard), (step.s + theta * step.h, &y.y1));
+        let s = Enclosure::from(step.s + theta * step.h);
+        let read = system.reads(mode);
+        let n = S::Components::count(&read, y.y1.size());
+        let state = List::made(n, |i| Enclosure::from(y.y1[S::Components::place(&read, i)]));
+        let bounds = system.enclose(mode, s, &state)[guard].value;
         self.along.room.give_step(y);
         Ok((value, if sign < 0.0 { bounds.negated() } else { bounds }))
     }

@@ -1,6 +1,6 @@
 //! By how much rounding may move the place of an event, and hide what a guard is there.
 
-use crate::events::along_step::{rounding, rounding_within, scales};
+use crate::events::along_step::{rounding, scales};
 use crate::events::arrival::HERE;
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
@@ -120,10 +120,6 @@ impl<S: System> Examination<'_, S> {
         let s_scale = scales(step, s, y, &mut scale);
         let (hidden, count) = rounding(system, at, (s, y), (s_scale, &scale), self.room);
         self.statistics.guards += count;
-        if S::READABLE {
-            self.room.give(scale);
-            return hidden.max(rounding_within(system, at, (s, y)));
-        }
         let mut slope = self.room.state();
         system.field(at.0, s, y, &mut slope);
         self.statistics.field += 1;

@@ -9,7 +9,7 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
-use crate::events::along_step::{rounding, rounding_within, scales};
+use crate::events::along_step::{rounding, scales};
 use crate::events::phase::{NEAR_ZERO, near_zero};
 use crate::events::{Crossed, Event, Note, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
@@ -434,7 +434,6 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let (hidden, count) = rounding(self.system, at, (s, y), (s_scale, &scale), &mut self.room);
         self.statistics.guards += count;
         self.room.give(scale);
-        let hidden = hidden.max(rounding_within(self.system, at, (s, y)));
         if guard == event.guard { hidden.max(event.residual) } else { hidden }
     }
 

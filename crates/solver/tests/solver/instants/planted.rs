@@ -70,6 +70,17 @@ impl Function {
         i128::from(sum + 4 * i32::from(self.time))
     }
 
+    /// Whether both are the same, up to the sign.
+    fn is(&self, other: &Self) -> bool {
+        let opposite = Self {
+            components: other.components.map(|factor| -factor),
+            time: -other.time,
+            level: -other.level,
+            ..other.clone()
+        };
+        self == other || self.shape != Shape::Exponential && *self == opposite
+    }
+
     /// The sum of the absolute terms of the form.
     pub fn size(&self, s: Exact, y: &[Exact; LINEAR]) -> f64 {
         let sum: f64 =
@@ -277,9 +288,9 @@ impl Planted {
                 }
             }));
         }
-        // Those that are equal are one.
+        // Those that are equal, or opposite, are one.
         for function in uses.iter_mut().flatten().flatten() {
-            let equal = functions.iter().position(|other| *other == functions[*function]);
+            let equal = functions.iter().position(|other| other.is(&functions[*function]));
             *function = equal.unwrap_or(*function);
         }
         let transitions =
