@@ -1,5 +1,8 @@
 //! Orbits from a guess, and from an orbit at other parameters.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use stickslip_expression::{Compiled, InvalidValue, Rule, Runnable, System, Trigger};
 use stickslip_solver::{EmbeddedPair, GivenValue, Options, Outcome};
 
@@ -25,6 +28,8 @@ pub struct Orbits {
     pub(crate) halfway: Halfway,
     /// The accuracy of flows and runs.
     pub(crate) options: Options,
+    /// Whether nobody waits for what is searched for.
+    pub(crate) stop: Arc<AtomicBool>,
 }
 
 /// Where an orbit is searched for.
@@ -61,7 +66,20 @@ impl Orbits {
         InvalidValue::check("the system", found, expected, accepted)?;
         let options = Options { max_steps: 1_000_000, ..Options::with_tolerance(1e-13) };
         let halfway = Halfway::new(system, &compiled)?;
-        Ok(Self { system: system.clone(), compiled, halfway, options })
+        let stop = Arc::default();
+        Ok(Self { system: system.clone(), compiled, halfway, options, stop })
+    }
+
+    /// The same orbits. What is searched for ends soon, with [`OrbitError::Stopped`] or incomplete,
+    /// once the flag is set.
+    #[must_use]
+    pub fn until(&self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop, ..self.clone() }
+    }
+
+    /// Refuses to go on if nobody waits.
+    pub(crate) fn require_wanted(&self) -> Result<(), OrbitError> {
+        if self.stop.load(Ordering::Relaxed) { Err(OrbitError::Stopped) } else { Ok(()) }
     }
 
     /// The system.
@@ -222,6 +240,7 @@ impl Orbits {
 
     /// The orbit near a draft.
     pub(crate) fn solve(&self, draft: &Draft) -> Result<Orbit, OrbitError> {
+        self.require_wanted()?;
         let latest = draft.start.abs().max(draft.period().abs());
         let equations = Equations::new(&self.system, draft.clone(), &[], &self.options)?;
         let zero = correct(&equations, &equations.place(draft), &[])?;
@@ -252,6 +271,7 @@ impl Orbits {
 
     /// The same orbit with its verdict.
     pub(crate) fn judged(&self, equations: &Equations, orbit: &Orbit) -> Result<Orbit, OrbitError> {
+        self.require_wanted()?;
         let verdict = verdict(&self.halfway, equations, orbit, &self.options)?;
         Ok(Orbit { verdict, ..orbit.clone() })
     }

@@ -46,8 +46,7 @@ pub struct OrbitArguments {
 pub fn run(arguments: &OrbitArguments) -> Result<(), Failure> {
     let OrbitArguments { guess, format, out, plot } = arguments;
     let (out, plot) = (out.as_deref(), plot.as_ref());
-    let system = ("the system", Some(&*guess.from.system));
-    require_different(&[("--out", out), plotted(plot)], &[system])?;
+    require_different(&[("--out", out), plotted(plot)], &guess.inputs())?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
     let found = guess.find()?;

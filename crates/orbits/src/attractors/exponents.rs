@@ -170,6 +170,7 @@ impl<'a> Carrier<'a> {
         least: f64,
     ) -> Result<Vec<f64>, OrbitError> {
         let Self { orbits, parameters, graph, .. } = self;
+        orbits.require_wanted()?;
         let flow =
             self.flows.entry(mode).or_insert_with(|| Flow::new(graph, &orbits.system, mode, &[]));
         let flown = flow.run(parameters, (s, state), duration, &orbits.options);

@@ -80,6 +80,7 @@ impl Orbits {
             let (mut parameters, mut columns) = (parameters.to_vec(), Vec::new());
             let mut last: Option<DynamicRun<usize>> = None;
             for value in values {
+                self.require_wanted()?;
                 if let Some(own) = parameters.get_mut(parameter) {
                     *own = value;
                 }

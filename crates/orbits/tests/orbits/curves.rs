@@ -115,6 +115,76 @@ fn curves_of_tori_end_at_resonances() {
     assert!(count > 0, "{ends:?}");
 }
 
+/// The frequency where the closed form folds at an amplitude while the product of the multipliers is
+/// 1, between two others.
+fn fold_of_torus(closed: &Closed, [mut low, mut high]: [f64; 2]) -> f64 {
+    let at = |w: f64| Closed { w, c: 2.0 * closed.e.ln() * w / TAU, ..*closed };
+    let above = |w: f64| at(w).fold() > closed.a;
+    assert_ne!(above(low), above(high));
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if above(middle) == above(low) { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Both multipliers are 1 where the curve of tori meets that of folds. By the closed form that is
+/// at one frequency; the curve begins at another one.
+#[test]
+fn a_curve_of_tori_ends_at_a_fold() {
+    let closed = Closed { c: -0.045, a: 0.5, w: 0.56, ..Closed::EXAMPLE };
+    let exact = fold_of_torus(&closed, [0.51, 0.56]);
+    let window = [[0.5, 0.62], [-0.1, 0.0]];
+    let found = curve(&closed, SpecialKind::NeimarkSacker, (1, [-0.1, 0.0]), [4, 1], window);
+    assert!(found.objection.is_none(), "{:?}", found.objection);
+    let ends = found.meetings.iter().filter(|it| it.name == "resonance-1-1");
+    let [end] = ends.collect::<Vec<_>>()[..] else { panic!("{:?}", found.meetings) };
+    let [c, w] = [1, 4].map(|k| end.orbit.parameters[k]);
+    println!("resonance-1-1 at w = {w}, by the closed form {exact}");
+    assert!((w - exact).abs() < 1e-9, "{w} {exact}");
+    assert!((c - 2.0 * 0.8_f64.ln() * w / TAU).abs() < 1e-10, "{c} {w}");
+    // It is the end of the curve.
+    let last = [&found.points[0], &found.points[found.points.len() - 1]];
+    assert!(last.iter().any(|it| **it == end.orbit), "{end:?}");
+}
+
+/// Beside a clock, y'' = m + y² + (n + y) y' has the equilibrium y = −√−m, whose eigenvalues are
+/// imaginary at n = √−m and both 0 at the origin (Bogdanov and Takens).
+#[test]
+fn tori_and_folds_meet_at_the_origin() {
+    let text = "parameter m = -0.04, n = 0.3\nstate phase = 0.5, y = -0.2, z = 0\nphase' = 1\n\
+                y' = z\nz' = m + y^2 + (n + y)*z\nwhen phase > 1 \"phase\"\n  phase := phase - 1\n\
+                end = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["phase"], ..Guess::default() };
+    let orbit = orbits.find(&system.values(), &guess).expect("an orbit");
+    let options = BranchOptions::default();
+    let branch = orbits.branch(&orbit, 1, [0.1, 0.4], &options).expect("a branch");
+    let [ref torus] = branch.specials[..] else { panic!("{:?}", branch.specials) };
+    assert!((torus.value - 0.2).abs() < 1e-10, "{}", torus.value);
+    let window = [[-0.09, 0.05], [-0.2, 0.4]];
+    let tori = orbits.curve(torus, [0, 1], window, &options).expect("a curve");
+    assert!(tori.points.len() > 5 && tori.objection.is_none(), "{:?}", tori.objection);
+    for orbit in &tori.points {
+        let [m, n] = [orbit.parameters[0], orbit.parameters[1]];
+        assert!((m + n * n).abs() < 1e-9 && n > -1e-5, "{m} {n}");
+    }
+    let ends = |curve: &SpecialCurve| {
+        let [ref meeting] = curve.meetings[..] else { panic!("{:?}", curve.meetings) };
+        let [m, n] = [meeting.orbit.parameters[0], meeting.orbit.parameters[1]];
+        println!("{} at {m:e} {n:e}", meeting.name);
+        assert!(meeting.name == "resonance-1-1" && m.abs() < 1e-8 && n.abs() < 1e-5, "{meeting:?}");
+    };
+    ends(&tori);
+    // The curve of folds goes through the same orbit.
+    let branch = orbits.branch(&orbit, 0, [-0.09, 0.05], &options).expect("a branch");
+    let fold = branch.specials.iter().find(|it| it.kind == SpecialKind::Fold).expect("a fold");
+    let folds = orbits.curve(fold, [0, 1], window, &options).expect("a curve");
+    assert!(folds.points.iter().all(|it| it.parameters[0].abs() < 1e-10));
+    ends(&folds);
+}
+
 /// A phase between two conditions, which touch zero at m = 1 and at n = 1.
 pub const TWO_TOUCHES: &str = "parameter m = 0.7, n = 0.8\nstate phase = 1, x = 0\nmode turn\n  \
     phase' = 1\n  x' = -x\n  when phase > 2*pi \"phase\"\n    phase := phase - 2*pi\n  when \

@@ -69,6 +69,11 @@ impl Closed {
     pub fn determinant(&self) -> f64 {
         self.e * self.e * (-self.c * self.period()).exp()
     }
+    /// The amplitude at which both speeds are one.
+    pub fn fold(&self) -> f64 {
+        let (p, q) = self.pq();
+        self.d * self.impedance() * q.abs() / (self.w * p).hypot(q)
+    }
     /// How far the wall is between impacts, at least.
     pub fn room(&self, v: f64) -> f64 {
         let shift = (self.c * self.w).atan2(self.k - self.w * self.w);

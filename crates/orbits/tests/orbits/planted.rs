@@ -110,6 +110,9 @@ fn branches_that_meet() {
         assert!(matches!(found[..], [(SpecialKind::BranchPoint, _)]), "{found:?}");
         assert!(found[0].1.abs() < 1e-10, "{found:?}");
         let special = &branch.specials[0];
+        let said = orbits.curve(special, [0, 1], [[-0.5, 0.5], [0.1, 0.9]], &options);
+        let said = said.expect_err("no curve").to_string();
+        assert!(said.contains("branch-point") && said.contains("not `branch-point`"), "{said}");
         let beside = &branch.points[special.behind - 1];
         let other = orbits.switched(special, beside, 0, 0.05).expect("another branch");
         let [m, y] = [other.parameters[0], other.segments[0].state[2]];
