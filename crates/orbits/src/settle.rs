@@ -9,7 +9,7 @@ use stickslip_solver::dynamic::{
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 
 use crate::admissible::is_note;
-use crate::equations::{Draft, enlarge, is_apart};
+use crate::equations::{Draft, clock_values, enlarge, is_apart};
 use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::itinerary::Leg;
@@ -82,11 +82,37 @@ impl Orbits {
         let found = found.map_err(|error| OrbitError::Run { segment: 0, error })?;
         self.require_wanted()?;
         let draft = self.repeated(parameters, &found);
-        self.solve(&draft.ok_or(OrbitError::NotSettled {
+        let orbit = self.solve(&draft.ok_or(OrbitError::NotSettled {
             events: found.last.len(),
             tolerance: REPEATS,
             outcome: found.run.outcome,
-        })?)
+        })?)?;
+        Ok(self.earlier(&orbit, runnable.start().s).unwrap_or(orbit))
+    }
+
+    /// The same orbit some rounds earlier, if its system depends on the time: later, a change of a
+    /// period moves its start by much. Nothing is to begin on the way.
+    fn earlier(&self, orbit: &Orbit, earliest: f64) -> Option<Orbit> {
+        let mut earliest = earliest;
+        let mut is_timed = false;
+        for rule in self.system.modes.iter().flat_map(|mode| &mode.rules) {
+            match rule.trigger {
+                Trigger::Every { period, phase } => {
+                    let clock = clock_values(&self.system, &orbit.parameters, period, phase);
+                    earliest = earliest.max(clock.ok()?[1]);
+                    is_timed = true;
+                }
+                Trigger::At(_) => return None,
+                Trigger::When(..) => {}
+            }
+        }
+        let rounds = ((orbit.start - earliest) / orbit.period).floor();
+        if !is_timed || rounds < 1.0 {
+            return None;
+        }
+        let draft = orbit.draft();
+        let found = self.solve(&Draft { start: draft.start - rounds * orbit.period, ..draft });
+        found.ok().filter(|found| found.is_admissible() || !orbit.is_admissible())
     }
 
     /// A run from its start, for a time.

@@ -79,6 +79,7 @@ fn table(out: &mut dyn Write, found: &FoundOrbit, document: &Document<OneOrbit>)
     text::aligned(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())?;
     writeln!(out)?;
     let multipliers = match &orbit.multipliers {
+        Some(all) if all.is_empty() => "none but the trivial 1".to_owned(),
         Some(all) => all.iter().map(complex).collect::<Vec<_>>().join(", "),
         None => "infinite, at a graze".to_owned(),
     };

@@ -172,7 +172,7 @@ fn regions_are_written() {
     let found = rows(&located.stdout);
     assert_eq!(found[0].join(","), "name,r,a,orbit_count,orbits,region,distance");
     let found: Vec<String> = found[1..].iter().map(|row| row[3..5].join(",")).collect();
-    assert_eq!(found, ["0,none", "1,stable", "1,unstable"]);
+    assert_eq!(found, ["0,none", "2,stable and unstable", "2,unstable and unstable"]);
     directory.write("points.csv", "a,r\n0.02,0.7\n5,0.7\n");
     let located = directory.run("locate regions.json --batch points.csv --out located.csv");
     assert_eq!(located.code, 1, "{}", located.stderr);

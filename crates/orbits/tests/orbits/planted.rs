@@ -123,6 +123,64 @@ fn branches_that_meet() {
     }
 }
 
+/// A relay whose upper limit is m, and m + 0.1 in every other round: `n` is 0 and 1 in turns, and
+/// any n would come back after two rounds.
+#[test]
+fn a_discrete_state_keeps_its_values() {
+    let text = "parameter m = 0.5\nstate x = 0, n = 0\nn' = 0\nmode up\n  x' = 1 - x\n  when x > m \
+                + 0.1*n \"up\" -> down\n    n := 1 - n\nmode down\n  x' = -1 - x\n  when x < -0.5 \
+                \"down\" -> up\nstart in up\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["up", "down", "up", "down"], ..Guess::default() };
+    let found = orbits.find(&[0.5], &guess).expect("an orbit");
+    let settled = orbits.settled(&[0.5], &Guess::default(), 200.0).expect("an orbit");
+    let round = |m: f64| (1.5 / (1.0 - m)).ln() + ((1.0 + m) / 0.5).ln();
+    for orbit in [found, settled] {
+        let error = orbit.period - round(0.5) - round(0.6);
+        assert!(error.abs() < 1e-11 && orbit.is_admissible() && orbit.is_stable(), "{orbit:?}");
+        let mut n = [&orbit.segments[0], &orbit.segments[2]].map(|it| it.state[1]);
+        n.sort_by(f64::total_cmp);
+        assert_eq!(n, [0.0, 1.0]);
+        let branch = orbits.branch(&orbit, 0, [0.1, 0.8], &BranchOptions::default());
+        let branch = branch.expect("a branch");
+        assert_eq!((branch.specials.len(), branch.objection.as_deref()), (0, None));
+        for orbit in &branch.points {
+            let m = orbit.parameters[0];
+            assert!((orbit.period - round(m) - round(m + 0.1)).abs() < 1e-11, "{m}");
+        }
+    }
+    // In one round n has to be 1/2, and a value that is held from the state is no discrete one.
+    let one = Guess { itinerary: &["up", "down"], ..Guess::default() };
+    let orbit = orbits.find(&[0.5], &one).expect("an orbit");
+    assert!((orbit.segments[0].state[1] - 0.5).abs() < 1e-12 && !orbit.is_stable());
+    let sampled = System::parse(&text.replace("n := 1 - n", "n := x - 0.5")).expect("a system");
+    let orbits = Orbits::new(&sampled).expect("orbits");
+    let orbit = orbits.find(&[0.5], &guess).expect("an orbit");
+    // n = x − 1/2 at x = 1/2 + n/10 is 0.
+    assert!(orbit.segments.iter().all(|it| it.state[1].abs() < 1e-11), "{orbit:?}");
+    assert!((orbit.period - 2.0 * round(0.5)).abs() < 1e-10);
+}
+
+/// A run settles late, and its orbit is the one of the first period: a branch over the period of a
+/// clock would have to move its start far.
+#[test]
+fn an_orbit_of_a_clock_begins_early() {
+    let text = "parameter w = 2\nstate x = 0, v = 0\nx' = v\nv' = -x - 0.3*v + 0.5*cos(w*t)\n\
+                every 2*pi/w \"tick\"\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let orbit = orbits.settled(&[2.0], &Guess::default(), 400.0).expect("an orbit");
+    assert!((0.0..2.0 * PI).contains(&orbit.start) && orbit.is_admissible(), "{orbit:?}");
+    let branch = orbits.branch(&orbit, 0, [0.3, 3.0], &BranchOptions::default()).expect("it");
+    assert!(branch.points.len() < 200 && branch.objection.is_none(), "{:?}", branch.objection);
+    for orbit in &branch.points {
+        let w = orbit.parameters[0];
+        let x = 0.5 * (1.0 - w * w) / ((1.0 - w * w).powi(2) + 0.09 * w * w);
+        assert!((orbit.segments[0].state[0] - x).abs() < 1e-10, "{w}");
+    }
+}
+
 #[test]
 fn a_run_that_comes_to_rest_has_no_orbit() {
     let ball = "state x = 1, v = 0\nx' = v\nv' = -1\nwhen x < 0 \"bounce\"\n  x := 0\n  \
