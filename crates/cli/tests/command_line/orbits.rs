@@ -233,10 +233,12 @@ fn sections_and_basins_are_written() {
     let diagram = |threads: usize| {
         let ran = directory.run(&format!(
             "section ball.slip --rule bounce --skip 50 --for 10 --over a=0.02:0.0204 --values 5 \
-             --table diagram.csv --plot diagram.svg --show v --threads {threads}"
+             --table diagram.csv --plot diagram.svg --exponents exponents.svg --show v \
+             --threads {threads}"
         ));
         assert_eq!(ran.code, 0, "{}", ran.stderr);
         assert!(directory.read("diagram.svg").contains("downwards"));
+        assert!(directory.read("exponents.svg").contains("Lyapunov exponents"));
         directory.read("diagram.csv")
     };
     let alone = diagram(1);
