@@ -232,6 +232,67 @@ fn two_grazes_at_once() {
     assert_eq!(found.objection, None);
 }
 
+/// The kinds of special orbits that only some systems have, each with the closed form of its curve
+/// over a second parameter.
+#[test]
+fn every_kind_has_its_curve() {
+    let relay = |rules: &str| {
+        format!(
+            "parameter m = 1.3, h = 0.5\nstate x = 0, since = 0\nsince' = 1\nmode up\n  x' = 1 - x\n  \
+             {rules}\nmode down\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\n\
+             mode low\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\nstart in up"
+        )
+    };
+    let corner = relay(
+        "when x > h \"up\" -> down\n    since := 0\n  when since > m \"late\" -> low\n    since := 0",
+    );
+    let choice = relay("when x > h \"up\" if since < m -> down else -> low\n    since := 0");
+    let waits = relay(
+        "when x > h \"up\" -> wait\n    since := 0\nmode wait\n  x' = 1 - x\n  when since > m^2 - \
+         0.09*h \"waits\" -> down",
+    );
+    let sliding = |start: &str, turn: &str, law: &str| {
+        format!(
+            "parameter {start}\nstate v = 0.1, phase = 0\nphase' = 1\nwhen phase > {turn}*pi \
+             \"phase\"\n  phase := phase - 2*pi\nmode move\n  sliding on v = 0\n  v' = {law}"
+        )
+    };
+    let edge = sliding("m = 0.3, h = 1", "1", "h*cos(phase) - m*sign(v)");
+    let law = "m + h*cos(phase) + 0.5*cos(2*phase) - sign(v)";
+    let leaves = sliding("m = 0.55, h = 0.1", "1.5", law);
+    let half = |h: f64| ((1.0 + h) / (1.0 - h)).ln();
+    let at_edge = |h: f64| h / 1.0_f64.hypot(PI / 2.0);
+    type Case<'a> = (String, SpecialKind, [f64; 2], [f64; 2], &'a dyn Fn(f64) -> f64);
+    let cases: [Case<'_>; 5] = [
+        (corner, SpecialKind::CornerCollision, [0.8, 1.5], [0.3, 0.7], &half),
+        (choice, SpecialKind::Choice, [0.8, 1.5], [0.3, 0.7], &half),
+        (waits, SpecialKind::VanishingSegment, [0.1, 1.5], [0.3, 0.7], &|h| 0.3 * h.sqrt()),
+        (edge, SpecialKind::SlidingEdge, [0.2, 0.6], [0.7, 1.3], &at_edge),
+        (leaves, SpecialKind::AddingSliding, [0.5, 0.7], [0.05, 0.2], &|h| 0.5 + h),
+    ];
+    for (text, kind, range, across, exact) in cases {
+        let system = System::parse(&text).expect("a system");
+        let orbits = Orbits::new(&system).expect("orbits");
+        let orbit = orbits.settled(&system.values(), &Guess::default(), 200.0).expect("an orbit");
+        let options = BranchOptions::default();
+        let branch = orbits.branch(&orbit, 0, range, &options).expect("a branch");
+        let special = branch.specials.iter().find(|it| it.kind == kind).expect("a special orbit");
+        let found = orbits.curve(special, [1, 0], [across, [0.05, 2.0]], &options);
+        let found = found.expect("a curve");
+        assert!(found.points.len() > 20 && found.objection.is_none(), "{:?}", found.objection);
+        // Nothing else changes on the way.
+        assert!(found.meetings.is_empty(), "{kind:?}: {:?}", found.meetings);
+        let mut ends = Vec::new();
+        for orbit in &found.points {
+            let [m, h] = [orbit.parameters[0], orbit.parameters[1]];
+            assert!((m - exact(h)).abs() < 1e-12, "{kind:?}: {m} at {h}");
+            ends.push(h);
+        }
+        ends.sort_by(f64::total_cmp);
+        assert_eq!([ends[0], ends[ends.len() - 1]], across, "{kind:?}");
+    }
+}
+
 /// Beside a relay, y' = m + n y − y³ folds where 27 m² = 4 n³.
 pub const CUSP: &str = "parameter m = 0.1, n = 1\nstate x = 0, y = 1\ny' = m + n*y - y^3\nmode up\n  \
     x' = 1 - x\n  when x > 0.5 \"up\" -> down\nmode down\n  x' = -1 - x\n  when x < -0.5 \"down\" \
