@@ -32,7 +32,8 @@ pub struct BranchArguments {
 
     /// Go on from both ends of the branch in the file of --near, over an interval that contains its
     /// own, or from where it broke off; what it has stays
-    #[arg(long, help_heading = "Branch", requires = "near", conflicts_with_all = ["set", "switch"])]
+    #[arg(long, help_heading = "Branch", requires = "near")]
+    #[arg(conflicts_with_all = ["itinerary", "settle", "set", "switch"])]
     pub resume: bool,
 
     /// The longest step along the branch, of the size of what changes; 1e-7 to 1

@@ -68,7 +68,7 @@ pub struct GuessArguments {
     /// an orbit of the other branch at a branch-point; the first of the kind, or the N-th with
     /// KIND:N
     #[arg(long, value_name = "KIND[:N]", help_heading = "Guess", requires = "near")]
-    #[arg(conflicts_with = "set")]
+    #[arg(conflicts_with_all = ["itinerary", "settle", "set"])]
     pub switch: Option<String>,
 
     /// The durations of the segments; otherwise each is up to where its rule acts

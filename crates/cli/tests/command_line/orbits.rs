@@ -139,7 +139,9 @@ fn a_written_branch_goes_on() {
         ("light.slip --near part.json --resume --over a=0.01:0.03", "from an orbit"),
         ("other.slip --near part.json --resume --over a=0.01:0.03", "the rule at its place"),
         ("ball.slip --near orbit.json --resume --over a=0.01:0.03", "missing field"),
-        ("ball.slip --itinerary bounce --resume --over a=0.01:0.03", "--near"),
+        ("ball.slip --itinerary bounce --resume --over a=0.01:0.03", "--itinerary"),
+        ("ball.slip --resume --over a=0.01:0.03", "--near"),
+        ("ball.slip --settle 9 --switch flip --over a=0.01:0.03", "--settle"),
         ("ball.slip --near part.json --resume --set r=0.8 --over a=0.01:0.03", "--set"),
         ("ball.slip --near part.json --resume --over a=0.01:0.03 --out part.json", "same file"),
     ] {
@@ -172,7 +174,7 @@ fn regions_are_written() {
     let found = rows(&located.stdout);
     assert_eq!(found[0].join(","), "name,r,a,orbit_count,orbits,region,distance");
     let found: Vec<String> = found[1..].iter().map(|row| row[3..5].join(",")).collect();
-    assert_eq!(found, ["0,none", "2,stable and unstable", "2,unstable and unstable"]);
+    assert_eq!(found, ["0,none", "1,stable", "1,unstable"]);
     directory.write("points.csv", "a,r\n0.02,0.7\n5,0.7\n");
     let located = directory.run("locate regions.json --batch points.csv --out located.csv");
     assert_eq!(located.code, 1, "{}", located.stderr);

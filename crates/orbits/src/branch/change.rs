@@ -192,6 +192,11 @@ impl Along<'_> {
 
     /// What a margin is measured by.
     pub fn margin_size(&self, margin: &Margin, point: &Point) -> Option<f64> {
+        if let Margin::Choice { segment } = *margin {
+            // What chooses whether to slide is a rate.
+            let event = &point.evaluation.ends[segment].event;
+            return Some(if event.slides_behind() { event.rate_size() } else { 0.0 });
+        }
         let (Margin::Inner { segment, rule }
         | Margin::AtEnd { segment, rule }
         | Margin::AtStart { segment, rule }) = *margin
