@@ -89,12 +89,21 @@ impl Orbits {
     }
 
     /// The orbit near a guess: from its start, the rules of the itinerary act one after another,
-    /// and other rules are not looked at. Which mode follows a rule that chooses one is as there.
+    /// and other rules are not looked at. Which mode follows a rule that chooses one is as there. If
+    /// this round is too far from an orbit, the next one is taken.
     ///
     /// # Errors
     /// [`OrbitError`].
     pub fn find(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Orbit, OrbitError> {
-        self.solve(&self.followed(parameters, guess)?)
+        let (draft, (s, state)) = self.followed(parameters, guess)?;
+        let error = match self.solve(&draft) {
+            Err(error) if guess.durations.is_none() => error,
+            found => return found,
+        };
+        let (mode, time) = (Some(draft.legs[0].mode), Some(s));
+        let next = Guess { mode, time, state: Some(&state), ..*guess };
+        let found = self.followed(parameters, &next).and_then(|(draft, _)| self.solve(&draft));
+        found.map_err(|_| error)
     }
 
     /// The orbit of the same itinerary at other parameters, near enough that the search finds it.
@@ -156,8 +165,12 @@ impl Orbits {
         InvalidValue::check(name.clone(), value, expected, (low..=high).contains(&value))
     }
 
-    /// What the rules of an itinerary do from its start.
-    fn followed(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Draft, OrbitError> {
+    /// What the rules of an itinerary do from its start, and when and in which state they end.
+    fn followed(
+        &self,
+        parameters: &[f64],
+        guess: &Guess<'_>,
+    ) -> Result<(Draft, (f64, Vec<f64>)), OrbitError> {
         let runnable = self.start(parameters, guess)?;
         let start = runnable.start();
         require_short(guess.itinerary.len(), start.state.len())?;
@@ -201,7 +214,7 @@ impl Orbits {
             let found = GivenValue::Phrase(format!("ends in mode {found}").into());
             return Err(InvalidValue::new("itinerary", found, expected).into());
         }
-        Ok(draft)
+        Ok((draft, (s, state)))
     }
 
     /// Where a rule acts first, while others are not looked at; or what is there at a given time.

@@ -127,9 +127,9 @@ fn a_written_branch_goes_on() {
     let mut value: Value = serde_json::from_str(&directory.read("part.json")).unwrap();
     value.as_object_mut().unwrap().remove("digests");
     value["points"][3]["segments"][0]["state"][1] = 0.6.into();
-    directory.write("changed.json", &value.to_string());
-    directory.write("light.slip", &BALL.replace("v' = -1", "v' = -1.01"));
-    directory.write("other.slip", &BALL.replace("\"bounce\"", "\"jump\""));
+    directory.write("changed.json", value.to_string());
+    directory.write("light.slip", BALL.replace("v' = -1", "v' = -1.01"));
+    directory.write("other.slip", BALL.replace("\"bounce\"", "\"jump\""));
     directory.run("orbit ball.slip --itinerary period,bounce --out orbit.json");
     for (arguments, said) in [
         ("ball.slip --near part.json --resume --over a=0.019:0.03", "contains that of the branch"),

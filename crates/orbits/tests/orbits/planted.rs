@@ -78,6 +78,46 @@ fn an_event_at_the_edge_of_sliding() {
     require(&settled(text, [0.2, 0.6]), SpecialKind::SlidingEdge, edge);
 }
 
+/// The same with the time in the equations, over the strength of the friction; it folds where the
+/// force has no more than that, m = 2a/π.
+#[test]
+fn an_edge_of_sliding_at_a_time() {
+    let text = "parameter m = 0.5, a = 1.2\nstate v = 0.1\nevery 2*pi \"tick\"\nmode move\n  sliding on \
+                v = 0\n  v' = a*cos(t) - m*sign(v)\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let orbit = orbits.settled(&system.values(), &Guess::default(), 100.0).expect("an orbit");
+    let options = BranchOptions::default();
+    let branch = orbits.branch(&orbit, 0, [0.05, 1.1], &options).expect("a branch");
+    let found: Vec<_> = branch.specials.iter().map(|it| (it.kind, it.value)).collect();
+    let near = |kind: SpecialKind, value: f64| {
+        found.iter().any(|it| it.0 == kind && (it.1 - value).abs() < 1e-10)
+    };
+    assert!(near(SpecialKind::SlidingEdge, 1.2 / 1.0_f64.hypot(PI / 2.0)), "{found:?}");
+    assert!(near(SpecialKind::Fold, 2.4 / PI), "{found:?}");
+    assert_eq!(branch.objection, None);
+}
+
+/// From a start in the middle, the second round is the orbit: its first one begins elsewhere.
+#[test]
+fn a_second_round_is_near_enough() {
+    let text =
+        "parameter m = 1\nstate x = 0\nx' = m + x^2\nwhen x > 5 \"spike\"\n  x := -5\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["spike"], ..Guess::default() };
+    let orbit = orbits.find(&[1.0], &guess).expect("an orbit");
+    assert!((orbit.period - 2.0 * 5.0_f64.atan()).abs() < 1e-12, "{orbit:?}");
+    // As m falls to 0, the period grows as π/√m.
+    let branch = orbits.branch(&orbit, 0, [1e-4, 4.0], &BranchOptions::default()).expect("it");
+    assert_eq!((branch.objection.as_deref(), branch.specials.len()), (None, 0));
+    for orbit in &branch.points {
+        let root = orbit.parameters[0].sqrt();
+        let exact = 2.0 / root * (5.0 / root).atan();
+        assert!((orbit.period - exact).abs() < 1e-9 * exact, "{orbit:?}");
+    }
+}
+
 /// A block sticks while a force m + 0.1 cos φ + 0.5 cos 2φ is less than 1. Its second maximum, at
 /// φ = π, is m + 0.4; the phase may start anew before it while the block sticks.
 #[test]
