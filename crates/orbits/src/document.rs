@@ -38,7 +38,7 @@ pub struct OrbitRecord {
     pub admissible: bool,
     /// Why it does not.
     pub obstacle: Option<String>,
-    /// Whether all multipliers are less than 1 in size.
+    /// Whether all multipliers are less than 1 in size, by more than their errors.
     pub stable: bool,
     /// The largest error of a state or a duration, of its size.
     pub error: f64,

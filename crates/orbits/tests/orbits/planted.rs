@@ -98,6 +98,26 @@ fn an_edge_of_sliding_at_a_time() {
     assert_eq!(branch.objection, None);
 }
 
+/// Two equal relays that know nothing of each other: a difference of their phases stays, so that
+/// their orbit is not stable, though no multiplier is outside the unit circle.
+#[test]
+fn a_neutral_orbit_is_not_stable() {
+    let text = "state x = 0, y = 0, u = 1, w = 1\nx' = u - x\ny' = w - y\nu' = 0\nw' = 0\n\
+                when x*u > 0.5 \"x\"\n  u := -u\nwhen y*w > 0.5 \"y\"\n  w := -w\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let state = [0.0, 0.3, 1.0, 1.0];
+    let itinerary = ["y", "x", "y", "x"];
+    let guess = Guess { itinerary: &itinerary, state: Some(&state), ..Guess::default() };
+    let orbit = orbits.find(&[], &guess);
+    let settled = orbits.settled(&[], &Guess::default(), 100.0);
+    for orbit in orbit.into_iter().chain(settled) {
+        assert!((orbit.period - 2.0 * 3.0_f64.ln()).abs() < 1e-11, "{orbit:?}");
+        let multipliers = orbit.multipliers.clone().expect("no graze");
+        assert!((multipliers[0][0] - 1.0).abs() < 1e-12 && !orbit.is_stable(), "{multipliers:?}");
+    }
+}
+
 /// From a start in the middle, the second round is the orbit: its first one begins elsewhere.
 #[test]
 fn a_second_round_is_near_enough() {
