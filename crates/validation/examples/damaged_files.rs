@@ -126,10 +126,11 @@ fn battery(times: usize) -> Result<(), Box<dyn Error>> {
     for (index, (name, command, read)) in FILES.into_iter().enumerate() {
         let path = folder.path().join(format!("{index}.file"));
         let words = ["stickslip"].into_iter().chain(command.split_whitespace());
-        let words = words.map(|word| match word.ends_with(".slip") {
-            true => folder.path().join(word).into_os_string(),
-            false => word.into(),
-        });
+        let placed = |word: &str| match word {
+            "ball.slip" | "cusp.slip" => folder.path().join(word).into_os_string(),
+            other => other.into(),
+        };
+        let words = words.map(placed);
         stickslip_cli::run(words.chain([path.as_os_str().to_owned()]))?;
         let file = fs::read(&path)?;
         fs::copy(&path, path.with_extension("whole"))?;
