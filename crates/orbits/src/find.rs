@@ -89,8 +89,8 @@ impl Orbits {
     }
 
     /// The orbit near a guess: from its start, the rules of the itinerary act one after another,
-    /// and other rules are not looked at. Which mode follows a rule that chooses one is as there. If
-    /// this round is too far from an orbit, the next one is taken.
+    /// and other rules are not looked at. Which mode follows a rule that chooses one is as there.
+    /// If this round is too far from an orbit, the next one is taken.
     ///
     /// # Errors
     /// [`OrbitError`].

@@ -127,8 +127,8 @@ fn curves_of_tori_end_at_resonances() {
     assert!(count > 0, "{ends:?}");
 }
 
-/// The frequency where the closed form folds at an amplitude while the product of the multipliers is
-/// 1, between two others.
+/// The frequency where the closed form folds at an amplitude while the product of the multipliers
+/// is 1, between two others.
 fn fold_of_torus(closed: &Closed, [mut low, mut high]: [f64; 2]) -> f64 {
     let at = |w: f64| Closed { w, c: 2.0 * closed.e.ln() * w / TAU, ..*closed };
     let above = |w: f64| at(w).fold() > closed.a;
@@ -238,13 +238,14 @@ fn two_grazes_at_once() {
 fn every_kind_has_its_curve() {
     let relay = |rules: &str| {
         format!(
-            "parameter m = 1.3, h = 0.5\nstate x = 0, since = 0\nsince' = 1\nmode up\n  x' = 1 - x\n  \
-             {rules}\nmode down\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\n\
+            "parameter m = 1.3, h = 0.5\nstate x = 0, since = 0\nsince' = 1\nmode up\n  \
+             x' = 1 - x\n  {rules}\nmode down\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\n\
              mode low\n  x' = -1 - x\n  when x < -h \"down\" -> up\n    since := 0\nstart in up"
         )
     };
     let corner = relay(
-        "when x > h \"up\" -> down\n    since := 0\n  when since > m \"late\" -> low\n    since := 0",
+        "when x > h \"up\" -> down\n    since := 0\n  when since > m \"late\" -> low\n    \
+         since := 0",
     );
     let choice = relay("when x > h \"up\" if since < m -> down else -> low\n    since := 0");
     let waits = relay(

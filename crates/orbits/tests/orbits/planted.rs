@@ -82,8 +82,8 @@ fn an_event_at_the_edge_of_sliding() {
 /// force has no more than that, m = 2a/π.
 #[test]
 fn an_edge_of_sliding_at_a_time() {
-    let text = "parameter m = 0.5, a = 1.2\nstate v = 0.1\nevery 2*pi \"tick\"\nmode move\n  sliding on \
-                v = 0\n  v' = a*cos(t) - m*sign(v)\nend = 9";
+    let text = "parameter m = 0.5, a = 1.2\nstate v = 0.1\nevery 2*pi \"tick\"\nmode move\n  \
+                sliding on v = 0\n  v' = a*cos(t) - m*sign(v)\nend = 9";
     let system = System::parse(text).expect("a system");
     let orbits = Orbits::new(&system).expect("orbits");
     let orbit = orbits.settled(&system.values(), &Guess::default(), 100.0).expect("an orbit");
