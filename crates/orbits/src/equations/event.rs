@@ -146,11 +146,9 @@ impl Event {
         let (by, other) = (by(self), by(later));
         let own = own.into_iter().chain([by.as_slice(), &self.conditions]);
         let others = others.into_iter().chain([other.as_slice(), &later.conditions]);
-        // A condition is zero at its event, and slopes are on one side of the edge of sliding.
-        let least = [&self.after, &self.slopes, &self.slopes_after].map(DVector::amax);
-        let least = least.into_iter().fold(0.0, f64::max);
         own.zip(others).all(|(own, others)| {
-            let size = own.iter().fold(least, |size, it| size.max(it.abs()));
+            // A condition is zero at its event.
+            let size = own.iter().fold(self.after.amax(), |size, it| size.max(it.abs()));
             own.iter().zip(others).all(|(one, other)| {
                 (one - other).abs() <= LIKE * (one.abs() + other.abs()) + HIDDEN * size
             })
