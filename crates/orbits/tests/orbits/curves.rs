@@ -232,6 +232,10 @@ fn two_grazes_at_once() {
     assert_eq!(found.objection, None);
 }
 
+/// A text, a kind that its branch has over a range, a range of the second parameter, and the first
+/// parameter over it.
+type Planted<'a> = (String, SpecialKind, [f64; 2], [f64; 2], &'a dyn Fn(f64) -> f64);
+
 /// The kinds of special orbits that only some systems have, each with the closed form of its curve
 /// over a second parameter.
 #[test]
@@ -263,8 +267,7 @@ fn every_kind_has_its_curve() {
     let leaves = sliding("m = 0.55, h = 0.1", "1.5", law);
     let half = |h: f64| ((1.0 + h) / (1.0 - h)).ln();
     let at_edge = |h: f64| h / 1.0_f64.hypot(PI / 2.0);
-    type Case<'a> = (String, SpecialKind, [f64; 2], [f64; 2], &'a dyn Fn(f64) -> f64);
-    let cases: [Case<'_>; 5] = [
+    let cases: [Planted<'_>; 5] = [
         (corner, SpecialKind::CornerCollision, [0.8, 1.5], [0.3, 0.7], &half),
         (choice, SpecialKind::Choice, [0.8, 1.5], [0.3, 0.7], &half),
         (waits, SpecialKind::VanishingSegment, [0.1, 1.5], [0.3, 0.7], &|h| 0.3 * h.sqrt()),

@@ -124,7 +124,7 @@ pub fn impacts(
     let run = run.starting(None, Some(s), Some(state)).expect("a start");
     let options = Options { max_switches: 12, ..Options::with_tolerance(1e-12) };
     let mut events = Vec::new();
-    run.events(EmbeddedPair::Dop853, s + time, &options, &mut events).expect("a run");
+    let _ = run.events(EmbeddedPair::Dop853, s + time, &options, &mut events).expect("a run");
     events.iter().filter(|event| event.guard == 0).map(|event| event.s).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Branches that go on from their ends, and what was written of them.
 
 use stickslip_expression::System;
-use stickslip_orbits::{Branch, BranchOptions, Guess, Orbits, SpecialKind};
+use stickslip_orbits::{Branch, BranchOptions, Guess, Orbit, Orbits, SpecialKind};
 
 use crate::branches::values;
 use crate::impact::{self, Closed};
@@ -21,7 +21,7 @@ fn require_whole(branch: &Branch, range: [f64; 2]) {
     let graze = values(branch, SpecialKind::Grazing);
     assert!(graze.iter().any(|it| (it - 0.368781778292).abs() < 1e-11), "{graze:?}");
     // A special orbit lies between the points beside it, in the order of the branch.
-    let speed = |orbit: &stickslip_orbits::Orbit| orbit.segments[1].end[1];
+    let speed = |orbit: &Orbit| orbit.segments[1].end[1];
     for special in &branch.specials {
         let [one, other] = [special.behind - 1, special.behind].map(|k| speed(&branch.points[k]));
         let own = speed(&special.orbit);
@@ -37,7 +37,7 @@ fn a_branch_goes_on_from_both_ends() {
     let whole = impacts(&orbits, [0.05, 1.2], &options);
     require_whole(&whole, [0.05, 1.2]);
     let part = impacts(&orbits, [0.42, 0.5], &options);
-    assert!(part.specials.is_empty() && part.points.iter().all(|it| it.is_admissible()));
+    assert!(part.specials.is_empty() && part.points.iter().all(Orbit::is_admissible));
     let resumed = orbits.resumed(&part, [0.05, 1.2], &options).expect("a branch");
     require_whole(&resumed, [0.05, 1.2]);
     // What was known stays, and nothing is added where there is nothing more.
@@ -119,7 +119,7 @@ fn what_cannot_go_on_is_refused() {
     let other = impact::TEXT.replace("d = 1", "d = 1.5");
     let other = Orbits::new(&System::parse(&other).expect("a system")).expect("orbits");
     let mut foreign = branch.clone();
-    for orbit in foreign.points.iter_mut() {
+    for orbit in &mut foreign.points {
         orbit.parameters[2] = 1.5;
     }
     let said = refused(&other, &foreign, [0.3, 0.6]);
