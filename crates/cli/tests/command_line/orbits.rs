@@ -202,7 +202,7 @@ fn regions_are_written() {
     let fewer = without(&|it| drop(it["atlas"]["regions"].as_array_mut().unwrap().pop()));
     let beyond = without(&|it| it["atlas"]["curves"][0]["ends"][0] = 77.into());
     for (text, said) in [
-        (&cut, "EOF"),
+        (&cut, "at line 1 column"),
         (&renamed, "schema"),
         (&changed, "atlas has changed since the file was written"),
         (&fewer, "other regions than the document lists"),
