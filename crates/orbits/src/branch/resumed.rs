@@ -83,6 +83,7 @@ impl Orbits {
 
     /// A branch as it was written, whose orbits are looked at again: each is one of this system,
     /// and whether the system follows it is decided anew.
+    #[cfg_attr(not(feature = "serde"), allow(dead_code, reason = "documents alone are reread"))]
     pub(crate) fn reread(&self, branch: Branch) -> Result<Branch, OrbitError> {
         let Branch { parameter, range, closed, objection, .. } = branch;
         let count = branch.points.len();
