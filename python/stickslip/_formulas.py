@@ -263,6 +263,30 @@ class FormulaSystem:
         """
         return _orbits.branch(self, orbit, parameter, interval, longest_step, most_points)
 
+    def resumed(
+        self,
+        branch: Branch,
+        interval: tuple[float, float],
+        *,
+        longest_step: float = 0.05,
+        most_points: int = 2000,
+    ) -> Branch:
+        """A branch that goes on from both of its ends, over an interval that contains its own, or
+        from where it broke off. What it has stays as it is.
+
+        Raises ValueError if a value is wrong, or if the branch is closed.
+        """
+        return _orbits.resumed(self, branch, interval, longest_step, most_points)
+
+    def read_branch(self, path: str | Path) -> Branch:
+        """The branch in a JSON file that `Branch.save` or the program has written. Its orbits are
+        looked at again: whether the system follows them is decided anew.
+
+        Raises ValueError if the file has no branch of this system, or has changed since it was
+        written.
+        """
+        return _orbits.read_branch(self, path)
+
     def curve(
         self,
         special: SpecialOrbit,

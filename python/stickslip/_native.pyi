@@ -149,6 +149,14 @@ class OrbitSystem:
         longest_step: float,
         most_points: int,
     ) -> str: ...
+    def read_branch(self, text: str) -> str: ...
+    def resumed(
+        self,
+        branch: str,
+        range: tuple[float, float],
+        longest_step: float,
+        most_points: int,
+    ) -> str: ...
     def curve(
         self,
         special: str,

@@ -111,6 +111,7 @@ class Branch(Shown):
     closed: bool
     objection: str | None
     _components: list[str] = field(repr=False)
+    _text: str = field(repr=False)
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -121,6 +122,14 @@ class Branch(Shown):
     def admissible(self) -> NDArray[np.bool_]:
         """Which orbits the system follows by itself."""
         return np.array([point.admissible for point in self.points])
+
+    def document(self) -> dict[str, Any]:
+        """The branch with names, as the program writes it."""
+        return dict(json.loads(self._text))
+
+    def save(self, path: str | Path) -> None:
+        """Writes the branch to a JSON file, which `FormulaSystem.read_branch` reads."""
+        Path(path).write_text(self._text, encoding="utf-8")
 
     def ends(self, component: str, segment: int = 0) -> NDArray[np.float64]:
         """A component of the states at the ends of a segment."""
@@ -214,14 +223,41 @@ def branch(
     most_points: int,
 ) -> Branch:
     """See `FormulaSystem.branch`."""
-    low, high = interval
     text = system._orbits.branch(
         json.dumps(orbit._record),
         _parameter(system, parameter),
-        (_number(low, "interval"), _number(high, "interval")),
+        _ends(interval),
         _number(longest_step, "longest_step"),
         most_points,
     )
+    return _read_branch(system, text)
+
+
+def resumed(
+    system: FormulaSystem,
+    branch: Branch,
+    interval: tuple[float, float],
+    longest_step: float,
+    most_points: int,
+) -> Branch:
+    """See `FormulaSystem.resumed`."""
+    step = _number(longest_step, "longest_step")
+    text = system._orbits.resumed(branch._text, _ends(interval), step, most_points)
+    return _read_branch(system, text)
+
+
+def read_branch(system: FormulaSystem, path: str | Path) -> Branch:
+    """See `FormulaSystem.read_branch`."""
+    return _read_branch(system, system._orbits.read_branch(Path(path).read_text(encoding="utf-8")))
+
+
+def _ends(interval: tuple[float, float]) -> tuple[float, float]:
+    low, high = interval
+    return _number(low, "interval"), _number(high, "interval")
+
+
+def _read_branch(system: FormulaSystem, text: str) -> Branch:
+    """The branch of a document."""
     found = json.loads(text)
     specials = [
         SpecialOrbit(
@@ -235,14 +271,16 @@ def branch(
         )
         for it in found["specials"]
     ]
+    low, high = found["range"]
     return Branch(
-        parameter=parameter,
-        interval=(float(low), float(high)),
+        parameter=found["parameter"],
+        interval=(low, high),
         points=[_read(system, it) for it in found["points"]],
         specials=specials,
         closed=found["closed"],
         objection=found["objection"],
         _components=found["components"],
+        _text=text,
     )
 
 

@@ -2,6 +2,7 @@
 
 import signal
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,13 @@ import stickslip
 
 ORBITS = Path(__file__).parents[2] / "examples" / "orbits"
 OSCILLATOR = "state x = 1\nstate v = 0\nx' = v\nv' = -1e6*x\nend = {}"
+
+
+def oscillator_regions() -> object:
+    oscillator = stickslip.read(ORBITS / "oscillator.slip")
+    orbit = oscillator.orbit(itinerary=["impact", "phase"])
+    return oscillator.orbit_regions(orbit, ("w", "a"), (0.5, 1.5), (0.05, 1.2), cells=40)
+
 
 # Each takes minutes, so that a deaf one would not come back within the time of the tests.
 LONG: dict[str, Callable[[], object]] = {
@@ -32,6 +40,10 @@ LONG: dict[str, Callable[[], object]] = {
     "diagram": lambda: stickslip.read(ORBITS / "ball.slip").diagram(
         "a", np.linspace(0.01, 0.03, 3000), "period", time=3000
     ),
+    "basins": lambda: stickslip.read(ORBITS / "wells.slip").basins(
+        ("x", "v"), np.linspace(-2, 2, 300), np.linspace(-2, 2, 300), settle=3000
+    ),
+    "regions": oscillator_regions,
     "solve_many": lambda: stickslip.solve_many(
         stickslip.system(OSCILLATOR.format(1000)), initial={"x": np.linspace(1, 2, 1000)}
     ),
@@ -47,6 +59,15 @@ def test_ctrl_c_ends_a_long_call(name: str) -> None:
         press.start()
         LONG[name]()
         press.cancel()
+
+
+@pytest.mark.parametrize("name", ["settle", "diagram", "basins", "regions"])
+def test_threads_end_behind_ctrl_c(name: str) -> None:
+    test_ctrl_c_ends_a_long_call(name)
+    time.sleep(1.0)
+    before = time.process_time()
+    time.sleep(0.5)
+    assert time.process_time() - before < 0.2
 
 
 def interrupted(call: Callable[[], object], after: float = 0.5) -> Any:

@@ -75,6 +75,35 @@ def test_a_branch_has_its_special_orbits() -> None:
         ball.switched(branch, special["fold"])
 
 
+def test_a_branch_is_saved_and_goes_on(tmp_path: Path) -> None:
+    ball = stickslip.system(BALL)
+    part = ball.branch(ball.orbit(itinerary=["period", "bounce"]), "a", (0.018, 0.025))
+    assert not part.specials
+    path = tmp_path / "branch.json"
+    part.save(path)
+    read = ball.read_branch(path)
+    assert read.document()["schema"] == "stickslip.orbit-branch/1"
+    assert np.array_equal(read.values, part.values) and read.interval == (0.018, 0.025)
+    assert np.array_equal(read.admissible, part.admissible)
+    whole = ball.resumed(read, (0.005, 0.05))
+    special = {it.kind: it.value for it in whole.specials}
+    assert abs(special["fold"] - 0.014043083214) < 1e-11
+    assert abs(special["flip"] - 0.029654967002) < 1e-11
+    assert whole.objection is None and whole.interval == (0.005, 0.05)
+    assert set(part.values) <= set(whole.values)
+    with pytest.raises(ValueError, match="contains that of the branch"):
+        ball.resumed(part, (0.019, 0.03))
+    heavier = stickslip.system(BALL.replace("v' = -1", "v' = -1.01"))
+    with pytest.raises(ValueError, match="from an orbit"):
+        heavier.read_branch(path)
+    path.write_text(path.read_text().replace('"period":1.0', '"period":1.1', 1))
+    with pytest.raises(ValueError, match="points has changed since the file was written"):
+        ball.read_branch(path)
+    path.write_text("{")
+    with pytest.raises(ValueError, match="EOF"):
+        ball.read_branch(path)
+
+
 def test_regions_say_where_an_orbit_is_stable(tmp_path: Path) -> None:
     ball = stickslip.system(BALL)
     orbit = ball.orbit(itinerary=["period", "bounce"])
@@ -95,6 +124,9 @@ def test_regions_say_where_an_orbit_is_stable(tmp_path: Path) -> None:
         expected = () if a < fold else (0,) if a < flip else (1,)
         assert found.at(a, r) == read.at(a, r) == expected, (a, r)
     assert found.svg().startswith("<svg") and found.at(1.0, 0.7) is None
+    path.write_text(path.read_text().replace("0.0", "0.1", 1))
+    with pytest.raises(ValueError, match="has changed since the file was written"):
+        stickslip.read_orbit_regions(path)
     with pytest.raises(ValueError, match="the places of two parameters"):
         ball.orbit_regions(orbit, ("a", "a"), *window)
     with pytest.raises(ValueError, match="cells = 0"):

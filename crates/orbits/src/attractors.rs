@@ -5,13 +5,44 @@ mod basins;
 mod exponents;
 mod section;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 pub use basins::{Attractor, Basins};
 pub use exponents::Exponents;
 pub use section::{Column, Section, SectionPoint};
 
-use stickslip_solver::{InvalidValue, Options, Outcome};
+use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicSwitch};
+use stickslip_solver::{InvalidValue, Options, Outcome, Rest};
 
 use crate::error::OrbitError;
+
+/// The events of a run, and where they accumulate. The run ends if nobody waits for it.
+struct Switches<'a> {
+    events: Vec<DynamicSwitch<usize>>,
+    rest: Option<f64>,
+    stop: &'a AtomicBool,
+}
+
+impl<'a> Switches<'a> {
+    fn until(stop: &'a AtomicBool) -> Self {
+        Self { events: Vec::new(), rest: None, stop }
+    }
+}
+
+impl DynamicObserver<usize> for Switches<'_> {
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
+        self.events.push(event.to_switch());
+    }
+    fn on_rest(&mut self, rest: &Rest<usize>) {
+        self.rest = Some(rest.s);
+    }
+    fn forget(&mut self, switches: usize) {
+        self.events.truncate(self.events.len().saturating_sub(switches));
+    }
+    fn stops(&self, _: f64) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
 
 /// The accuracy of long runs, from which no digits are read.
 fn coarse() -> Options {

@@ -5,8 +5,8 @@
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
 //! `meet` where branches meet, and `change` where the verdict changes, by conditions that `watches`
-//! has. `curve` follows special orbits over two parameters, and `switched` goes over to another
-//! branch.
+//! has. `curve` follows special orbits over two parameters, `switched` goes over to another branch,
+//! and `resumed` goes on with a branch that was written.
 
 mod borders;
 mod change;
@@ -14,6 +14,7 @@ pub(crate) mod curve;
 mod locate;
 mod meet;
 pub(crate) mod point;
+mod resumed;
 mod switched;
 mod test;
 pub(crate) mod watches;
@@ -25,7 +26,6 @@ use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
 use point::{Along, Point};
-use watches::Watches;
 
 /// How a branch is followed. Lengths are in unknowns of size 1: states over their largest value,
 /// times over the period, the parameter over the length of its range.
@@ -159,6 +159,9 @@ impl SpecialKind {
     }
 }
 
+/// What is said of a change between two points of a branch that is not found.
+const NOT_LOCATED: &str = "is not located";
+
 /// One end of a branch or a curve, or both together. What is special has the number of points
 /// before it.
 struct Half<S, P = Orbit> {
@@ -175,33 +178,64 @@ impl<S, P> Default for Half<S, P> {
 }
 
 impl<S, P> Half<S, P> {
-    /// Both ends together, with the point between them.
+    /// Says what is not known, besides what is said already.
+    fn object(&mut self, reason: String) {
+        self.objection = match self.objection.take() {
+            Some(before) => Some(format!("{before}; {reason}")),
+            None => Some(reason),
+        };
+    }
+
+    /// Both ends together, with at least one point between them.
     fn joined(
         mut self,
-        start: P,
+        mut middle: Self,
         back: Option<Self>,
         behind: impl Fn(&mut S) -> &mut usize,
     ) -> Self {
         let mut joined = back.unwrap_or_default();
         let before = joined.points.len();
+        let last = before + middle.points.len() - 1;
         joined.points.reverse();
         joined.specials.reverse();
         for special in &mut joined.specials {
             let own = behind(special);
             *own = before + 1 - *own;
         }
-        for special in &mut self.specials {
+        for special in &mut middle.specials {
             *behind(special) += before;
         }
-        joined.points.push(start);
+        for special in &mut self.specials {
+            *behind(special) += last;
+        }
+        joined.points.append(&mut middle.points);
         joined.points.append(&mut self.points);
+        joined.specials.append(&mut middle.specials);
         joined.specials.append(&mut self.specials);
         joined.closed = self.closed;
-        joined.objection = match (self.objection, joined.objection) {
-            (Some(one), Some(other)) => Some(format!("{one}; {other}")),
-            (one, other) => one.or(other),
-        };
+        [middle.objection, self.objection].into_iter().flatten().for_each(|it| joined.object(it));
         joined
+    }
+}
+
+impl SpecialOrbit {
+    /// Refuses a segment or a rule that the orbit does not have.
+    fn require_of(&self, orbits: &Orbits) -> Result<(), InvalidValue> {
+        let segments = &self.orbit.segments;
+        let segment = self.segment.unwrap_or(0);
+        let expected = format!("one of {} segments", segments.len());
+        InvalidValue::check("the segment", segment, expected, segment < segments.len())?;
+        let rules = orbits.system.modes.get(segments[segment].leg.mode);
+        let rules = rules.map_or(0, |mode| mode.rules.len());
+        let (rule, expected) = (self.rule.unwrap_or(0), format!("one of {rules} rules"));
+        InvalidValue::check("the rule", rule, expected, self.rule.is_none() || rule < rules)
+    }
+}
+
+impl Half<SpecialOrbit> {
+    fn branch(self, parameter: usize, range: [f64; 2]) -> Branch {
+        let Self { points, specials, closed, objection } = self;
+        Branch { parameter, range, points, specials, closed, objection }
     }
 }
 
@@ -221,24 +255,24 @@ impl Orbits {
         options.validate()?;
         self.compiled.with(&orbit.parameters)?;
         self.require_range(orbit, parameter, [low, high])?;
-        let draft = orbit.draft();
-        let active = [(parameter, high - low)];
-        let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
-        let (range, judged) = ([low, high], true);
-        let along = Along {
-            orbits: self,
-            equations: &equations,
-            parameter,
-            range,
-            judged,
-            watches: Watches::default(),
-        };
-        let start = along.first(&draft)?;
-        let ahead = self.half(&along, &start, options);
-        let back = (!ahead.closed).then(|| self.half(&along, &start.turned(), options));
-        let Half { points, specials, closed, objection } =
-            ahead.joined(start.orbit, back, |special| &mut special.behind);
-        Ok(Branch { parameter, range, points, specials, closed, objection })
+        let equations = self.along_parameter(orbit, parameter, [low, high])?;
+        let along = Along::new(self, &equations, parameter, [low, high]);
+        let start = along.first(&orbit.draft())?;
+        let ahead = self.half(&along, &start, None, options);
+        let back = (!ahead.closed).then(|| self.half(&along, &start.turned(), None, options));
+        let middle = Half { points: vec![start.orbit], ..Half::default() };
+        let whole = ahead.joined(middle, back, |special| &mut special.behind);
+        Ok(whole.branch(parameter, [low, high]))
+    }
+
+    /// The equations of an orbit with a parameter that has a range.
+    fn along_parameter(
+        &self,
+        orbit: &Orbit,
+        parameter: usize,
+        [low, high]: [f64; 2],
+    ) -> Result<Equations, OrbitError> {
+        Equations::new(&self.system, orbit.draft(), &[(parameter, high - low)], &self.options)
     }
 
     /// The value of the parameter at a point, in words.
@@ -247,20 +281,22 @@ impl Orbits {
         format!("{name} = {:?}", along.value(&point.place))
     }
 
-    /// Follows a branch in one direction, without its first point.
+    /// Follows a branch in one direction, without its first point. It is closed where it comes back
+    /// to its start, or to the other end of what is known.
     fn half(
         &self,
         along: &Along<'_>,
         start: &Point,
+        other: Option<&Point>,
         options: &BranchOptions,
     ) -> Half<SpecialOrbit> {
         let mut half = Half::default();
+        let (closes, soonest) = other.map_or((start, 5), |other| (other, 0));
         let mut last = start.clone();
         let mut step = options.first_step;
         while !along.is_at_end(&last) {
             if half.points.len() + 1 >= options.most_points {
-                half.objection =
-                    Some(format!("the branch goes on behind {} points", options.most_points));
+                half.object(format!("the branch goes on behind {} points", options.most_points));
                 break;
             }
             let next = match along.step(&last, step) {
@@ -275,12 +311,12 @@ impl Orbits {
                 }
                 Err(error) => {
                     let at = self.at(along, &last);
-                    half.objection = Some(format!("the branch breaks off at {at}: {error}"));
+                    half.object(format!("the branch breaks off at {at}: {error}"));
                     break;
                 }
             };
             let turn = last.tangent.dot(&next.tangent);
-            half.closed = half.points.len() > 4 && last.passes(&next, start);
+            half.closed = half.points.len() >= soonest && last.passes(&next, closes);
             match along.specials(&last, &next) {
                 Ok(found) => {
                     let behind = half.points.len() + 1;
@@ -288,10 +324,8 @@ impl Orbits {
                     half.specials.extend(found.map(|it| SpecialOrbit { behind, ..it }));
                 }
                 Err(error) => {
-                    half.objection = Some(format!(
-                        "what changes near {} is not located: {error}",
-                        self.at(along, &last)
-                    ));
+                    let at = self.at(along, &last);
+                    half.object(format!("what changes near {at} {NOT_LOCATED}: {error}"));
                 }
             }
             if half.closed {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use stickslip_expression::{InvalidValue, System};
-use stickslip_tracer::DocumentError;
 
 use crate::branch::curve::{Meeting, SpecialCurve};
 use crate::branch::{Branch, SpecialOrbit};
@@ -39,7 +38,7 @@ pub struct OrbitRecord {
     pub admissible: bool,
     /// Why it does not.
     pub obstacle: Option<String>,
-    /// Whether all multipliers are less than 1 in size.
+    /// Whether all multipliers are less than 1 in size, by more than their errors.
     pub stable: bool,
     /// The largest error of a state or a duration, of its size.
     pub error: f64,
@@ -249,6 +248,36 @@ impl Document<BranchRecord> {
     }
 }
 
+impl Document<BranchRecord> {
+    /// The branch. Its orbits are looked at again: each is one of this system, and whether the
+    /// system follows it is decided anew.
+    ///
+    /// # Errors
+    /// [`OrbitError`]: the document is not of a branch of this system.
+    pub fn branch(&self, orbits: &Orbits) -> Result<Branch, OrbitError> {
+        let (system, content) = (orbits.system(), &self.content);
+        let expected = format!("{BRANCH:?}");
+        InvalidValue::check("schema", &*self.schema, expected, self.schema == BRANCH)?;
+        let own: Vec<&str> = system.components.iter().map(|it| &*it.name).collect();
+        let expected = format!("those of the system, {}", own.join(", "));
+        let found = self.components.join(", ");
+        InvalidValue::check("components", &*found, expected, self.components == own)?;
+        let name = &content.parameter;
+        let parameter = system.parameters.iter().position(|it| it.name == *name);
+        let unknown = || InvalidValue::new("parameter", &**name, "a parameter of the system");
+        let points = content.points.iter().map(|it| it.read(orbits));
+        let specials = content.specials.iter().map(|it| it.special(orbits));
+        orbits.reread(Branch {
+            parameter: parameter.ok_or_else(unknown)?,
+            range: content.range,
+            points: points.collect::<Result<_, _>>()?,
+            specials: specials.collect::<Result<_, _>>()?,
+            closed: content.closed,
+            objection: content.objection.clone(),
+        })
+    }
+}
+
 impl Document<CurveRecord> {
     /// The document of a curve. `name` is that of the system.
     #[must_use]
@@ -295,14 +324,14 @@ impl Document<OrbitRegions> {
     /// The regions, and their names. They are made of the curves again.
     ///
     /// # Errors
-    /// The document is not of regions, or contradicts itself.
-    pub fn read(self) -> Result<(OrbitAtlas, OrbitNames), DocumentError> {
-        if self.schema != REGIONS {
-            return Err(DocumentError::Schema { found: self.schema });
-        }
+    /// [`OrbitError`]: the document is not of regions, or contradicts itself.
+    pub fn read(self) -> Result<(OrbitAtlas, OrbitNames), OrbitError> {
+        let expected = format!("{REGIONS:?}");
+        InvalidValue::check("schema", &*self.schema, expected, self.schema == REGIONS)?;
         let document = self.content.atlas;
         let names = OrbitNames { axes: document.axes.clone() };
-        Ok((document.atlas()?, names))
+        let atlas = document.atlas().map_err(|error| OrbitError::Regions(error.to_string()))?;
+        Ok((atlas, names))
     }
 }
 

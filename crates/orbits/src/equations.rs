@@ -22,7 +22,7 @@ use crate::itinerary::{Leg, require_of};
 pub(crate) use event::{Event, EventFormulas, rate};
 use flow::Flown;
 pub(crate) use flow::{Flow, enlarge};
-use parts::{clock, ticks};
+use parts::{clock, is_held, ticks};
 pub(crate) use parts::{clock_values, is_apart};
 
 /// A condition is zero if it is less than this part of what it is made of.
@@ -66,7 +66,8 @@ pub(crate) struct Equations {
     events: Vec<EventFormulas>,
     /// The period of a clock and its derivatives by parameters, and how often it ticks.
     clock: Option<(Program, f64)>,
-    /// Components that need not come back: nothing changes them, or nothing else reads them.
+    /// Components that need not come back, since nothing changes them or nothing else reads them,
+    /// or that come back whatever their value is.
     apart: Vec<bool>,
     /// The first draft.
     anchor: Draft,
@@ -120,7 +121,11 @@ impl Equations {
             EventFormulas::new(graph, system, *leg, *tick, &places)
         };
         let events = legs.iter().zip(&ticks).map(event).collect();
-        let apart = (0..n).map(|place| is_apart(system, &legs, place)).collect();
+        let apart = |place: usize| {
+            let start = anchor.states[0][place];
+            is_apart(system, &legs, place) || is_held(system, &legs, place, start)
+        };
+        let apart = (0..n).map(apart).collect();
         let sizes = sizes(&anchor, &flows, active, options)?;
         let least = sizes.rows(0, n).iter().fold(f64::INFINITY, |least, size| least.min(*size));
         let options = Options { atol: options.rtol * 0.1 * least, ..*options };

@@ -79,6 +79,9 @@ pub enum OrbitError {
         /// The length of the last update, of the size of the unknowns.
         update: f64,
     },
+    /// The flag of [`Orbits::until`](crate::Orbits::until) was set.
+    #[error("stopped")]
+    Stopped,
     /// What a system follows at a point is not decided.
     #[error("not decided: {0}")]
     Undecided(String),

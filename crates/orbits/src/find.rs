@@ -1,5 +1,8 @@
 //! Orbits from a guess, and from an orbit at other parameters.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use stickslip_expression::{Compiled, InvalidValue, Rule, Runnable, System, Trigger};
 use stickslip_solver::{EmbeddedPair, GivenValue, Options, Outcome};
 
@@ -25,6 +28,8 @@ pub struct Orbits {
     pub(crate) halfway: Halfway,
     /// The accuracy of flows and runs.
     pub(crate) options: Options,
+    /// Whether nobody waits for what is searched for.
+    pub(crate) stop: Arc<AtomicBool>,
 }
 
 /// Where an orbit is searched for.
@@ -61,7 +66,20 @@ impl Orbits {
         InvalidValue::check("the system", found, expected, accepted)?;
         let options = Options { max_steps: 1_000_000, ..Options::with_tolerance(1e-13) };
         let halfway = Halfway::new(system, &compiled)?;
-        Ok(Self { system: system.clone(), compiled, halfway, options })
+        let stop = Arc::default();
+        Ok(Self { system: system.clone(), compiled, halfway, options, stop })
+    }
+
+    /// The same orbits. What is searched for ends soon, with [`OrbitError::Stopped`] or incomplete,
+    /// once the flag is set.
+    #[must_use]
+    pub fn until(&self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop, ..self.clone() }
+    }
+
+    /// Refuses to go on if nobody waits.
+    pub(crate) fn require_wanted(&self) -> Result<(), OrbitError> {
+        if self.stop.load(Ordering::Relaxed) { Err(OrbitError::Stopped) } else { Ok(()) }
     }
 
     /// The system.
@@ -72,11 +90,20 @@ impl Orbits {
 
     /// The orbit near a guess: from its start, the rules of the itinerary act one after another,
     /// and other rules are not looked at. Which mode follows a rule that chooses one is as there.
+    /// If this round is too far from an orbit, the next one is taken.
     ///
     /// # Errors
     /// [`OrbitError`].
     pub fn find(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Orbit, OrbitError> {
-        self.solve(&self.followed(parameters, guess)?)
+        let (draft, (s, state)) = self.followed(parameters, guess)?;
+        let error = match self.solve(&draft) {
+            Err(error) if guess.durations.is_none() => error,
+            found => return found,
+        };
+        let (mode, time) = (Some(draft.legs[0].mode), Some(s));
+        let next = Guess { mode, time, state: Some(&state), ..*guess };
+        let found = self.followed(parameters, &next).and_then(|(draft, _)| self.solve(&draft));
+        found.map_err(|_| error)
     }
 
     /// The orbit of the same itinerary at other parameters, near enough that the search finds it.
@@ -138,8 +165,12 @@ impl Orbits {
         InvalidValue::check(name.clone(), value, expected, (low..=high).contains(&value))
     }
 
-    /// What the rules of an itinerary do from its start.
-    fn followed(&self, parameters: &[f64], guess: &Guess<'_>) -> Result<Draft, OrbitError> {
+    /// What the rules of an itinerary do from its start, and when and in which state they end.
+    fn followed(
+        &self,
+        parameters: &[f64],
+        guess: &Guess<'_>,
+    ) -> Result<(Draft, (f64, Vec<f64>)), OrbitError> {
         let runnable = self.start(parameters, guess)?;
         let start = runnable.start();
         require_short(guess.itinerary.len(), start.state.len())?;
@@ -183,7 +214,7 @@ impl Orbits {
             let found = GivenValue::Phrase(format!("ends in mode {found}").into());
             return Err(InvalidValue::new("itinerary", found, expected).into());
         }
-        Ok(draft)
+        Ok((draft, (s, state)))
     }
 
     /// Where a rule acts first, while others are not looked at; or what is there at a given time.
@@ -222,6 +253,7 @@ impl Orbits {
 
     /// The orbit near a draft.
     pub(crate) fn solve(&self, draft: &Draft) -> Result<Orbit, OrbitError> {
+        self.require_wanted()?;
         let latest = draft.start.abs().max(draft.period().abs());
         let equations = Equations::new(&self.system, draft.clone(), &[], &self.options)?;
         let zero = correct(&equations, &equations.place(draft), &[])?;
@@ -252,6 +284,7 @@ impl Orbits {
 
     /// The same orbit with its verdict.
     pub(crate) fn judged(&self, equations: &Equations, orbit: &Orbit) -> Result<Orbit, OrbitError> {
+        self.require_wanted()?;
         let verdict = verdict(&self.halfway, equations, orbit, &self.options)?;
         Ok(Orbit { verdict, ..orbit.clone() })
     }

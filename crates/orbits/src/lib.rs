@@ -4,11 +4,12 @@
 //! Python, or a [system of Rust](stickslip_expression::NativeSystem). An [`Orbit`] is found from a
 //! [`Guess`], from a run that settles, or from an orbit at other parameters. [`Orbits::branch`]
 //! follows it over a parameter and locates the [special orbits](SpecialOrbit) on the way;
-//! [`Orbits::curve`] follows one of these over two parameters, and [`Orbits::switched`] goes over
-//! to another branch at a flip or a branch point. [`Orbits::regions`] has where over two parameters
-//! the orbit exists and is stable, as an atlas. What runs lead to, orbit or not, is shown by
-//! [`Orbits::section`] and [`Orbits::diagram`] as points, by [`Orbits::exponents`] as Lyapunov
-//! exponents, and by [`Orbits::basins`] over initial values.
+//! [`Orbits::resumed`] goes on from the ends of a branch. [`Orbits::curve`] follows a special orbit
+//! over two parameters, and [`Orbits::switched`] goes over to another branch at a flip or a branch
+//! point. [`Orbits::regions`] has where over two parameters the orbit exists and is stable, as an
+//! atlas. What runs lead to, orbit or not, is shown by [`Orbits::section`] and [`Orbits::diagram`]
+//! as points, by [`Orbits::exponents`] as Lyapunov exponents, and by [`Orbits::basins`] over
+//! initial values.
 //!
 //! ```
 //! use stickslip_expression::System;

@@ -2,6 +2,9 @@
 
 use crate::itinerary::Leg;
 
+/// A multiplier so near the unit circle may be on it.
+const NEUTRAL: f64 = 1e-10;
+
 /// A periodic orbit as segments, each up to the rule of its leg.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
@@ -108,10 +111,10 @@ impl Orbit {
         self.start + self.segments[..segment].iter().map(|it| it.duration).sum::<f64>()
     }
 
-    /// Whether all multipliers are less than 1 in size.
+    /// Whether all multipliers are less than 1 in size, by more than their errors.
     #[must_use]
     pub fn is_stable(&self) -> bool {
-        let inside = |[re, im]: &[f64; 2]| re.hypot(*im) < 1.0;
+        let inside = |[re, im]: &[f64; 2]| re.hypot(*im) < 1.0 - NEUTRAL;
         self.multipliers.as_ref().is_some_and(|all| all.iter().all(inside))
     }
 

@@ -1,5 +1,7 @@
 //! Orbits from a run that settles: its last events repeat.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use stickslip_expression::{InvalidValue, Runnable, Trigger};
 use stickslip_solver::dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, run_dynamic_with,
@@ -7,7 +9,7 @@ use stickslip_solver::dynamic::{
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 
 use crate::admissible::is_note;
-use crate::equations::{Draft, enlarge, is_apart};
+use crate::equations::{Draft, clock_values, enlarge, is_apart};
 use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::itinerary::Leg;
@@ -27,14 +29,15 @@ pub(crate) struct Settling {
 }
 
 /// What is seen of a run.
-struct Watch {
+struct Watch<'a> {
     events: Vec<DynamicSwitch<usize>>,
     sizes: [Vec<f64>; 2],
     /// The middle of the time.
     middle: f64,
+    stop: &'a AtomicBool,
 }
 
-impl Watch {
+impl Watch<'_> {
     fn see(&mut self, s: f64, state: &[f64]) {
         let [whole, late] = &mut self.sizes;
         enlarge(whole, state);
@@ -44,11 +47,14 @@ impl Watch {
     }
 }
 
-impl DynamicObserver<usize> for Watch {
+impl DynamicObserver<usize> for Watch<'_> {
     const WANTS_SEGMENTS: bool = true;
 
     fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
         self.events.push(event.to_switch());
+    }
+    fn stops(&self, _: f64) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
     fn on_segment(&mut self, _: usize, dense: &DynamicDense<'_>) {
         self.see(dense.start(), dense.coefficients());
@@ -74,12 +80,39 @@ impl Orbits {
         require_time("the time to settle", time)?;
         let found = self.settling(&runnable, time, &self.options);
         let found = found.map_err(|error| OrbitError::Run { segment: 0, error })?;
+        self.require_wanted()?;
         let draft = self.repeated(parameters, &found);
-        self.solve(&draft.ok_or(OrbitError::NotSettled {
+        let orbit = self.solve(&draft.ok_or(OrbitError::NotSettled {
             events: found.last.len(),
             tolerance: REPEATS,
             outcome: found.run.outcome,
-        })?)
+        })?)?;
+        Ok(self.earlier(&orbit, runnable.start().s).unwrap_or(orbit))
+    }
+
+    /// The same orbit some rounds earlier, if its system depends on the time: later, a change of a
+    /// period moves its start by much. Nothing is to begin on the way.
+    fn earlier(&self, orbit: &Orbit, earliest: f64) -> Option<Orbit> {
+        let mut earliest = earliest;
+        let mut is_timed = false;
+        for rule in self.system.modes.iter().flat_map(|mode| &mode.rules) {
+            match rule.trigger {
+                Trigger::Every { period, phase } => {
+                    let clock = clock_values(&self.system, &orbit.parameters, period, phase);
+                    earliest = earliest.max(clock.ok()?[1]);
+                    is_timed = true;
+                }
+                Trigger::At(_) => return None,
+                Trigger::When(..) => {}
+            }
+        }
+        let rounds = ((orbit.start - earliest) / orbit.period).floor();
+        if !is_timed || rounds < 1.0 {
+            return None;
+        }
+        let draft = orbit.draft();
+        let found = self.solve(&Draft { start: draft.start - rounds * orbit.period, ..draft });
+        found.ok().filter(|found| found.is_admissible() || !orbit.is_admissible())
     }
 
     /// A run from its start, for a time.
@@ -91,7 +124,8 @@ impl Orbits {
     ) -> Result<Settling, RunError> {
         let start = runnable.start();
         let sizes = [0, 1].map(|_| vec![0.0; start.state.len()]);
-        let mut watch = Watch { events: Vec::new(), sizes, middle: start.s + 0.5 * time };
+        let (events, middle) = (Vec::new(), start.s + 0.5 * time);
+        let mut watch = Watch { events, sizes, middle, stop: &self.stop };
         let (pair, end) = (EmbeddedPair::Dop853, start.s + time);
         let run = run_dynamic_with(pair, runnable, start, end, options, &mut watch)?;
         let Watch { events: mut last, sizes, .. } = watch;

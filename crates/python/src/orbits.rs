@@ -1,16 +1,20 @@
 //! Periodic orbits of systems of formulas, as the JSON of their documents.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use pyo3::prelude::*;
 use serde_json::json;
 use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
 use stickslip_figure::pictures::family::draw_named;
-use stickslip_orbits::document::{Document, OrbitRecord, OrbitRegions, SpecialRecord};
+use stickslip_orbits::document::{
+    BranchRecord, Document, OrbitRecord, OrbitRegions, SpecialRecord,
+};
 use stickslip_orbits::{
-    Attractor, BranchOptions, Column, Guess, Orbit, OrbitAtlas, OrbitBoundary, OrbitError,
+    Attractor, Branch, BranchOptions, Column, Guess, Orbit, OrbitAtlas, OrbitBoundary, OrbitError,
     OrbitNames, Orbits, RegionOptions, Section, SectionPoint, SpecialOrbit,
 };
+use stickslip_plane::sealed;
 use stickslip_tracer::Point;
 
 use crate::background::watched;
@@ -91,15 +95,33 @@ impl OrbitSystem {
         longest_step: f64,
         most_points: usize,
     ) -> PyResult<String> {
-        let (low, high) = range;
         let orbit = self.read(orbit)?;
-        let usual = BranchOptions::default();
-        let first_step = usual.first_step.min(longest_step);
-        let options = BranchOptions { first_step, longest_step, most_points, ..usual };
-        let work = move |orbits: &Orbits| orbits.branch(&orbit, parameter, [low, high], &options);
-        let found = self.on_thread(py, work)?;
-        let document = Document::of_branch(&self.0, "", &found.map_err(exception)?);
-        serde_json::to_string(&document).map_err(failed)
+        let options = steps(longest_step, most_points);
+        let work = move |orbits: &Orbits| orbits.branch(&orbit, parameter, range.into(), &options);
+        self.written_branch(self.on_thread(py, work)?)
+    }
+
+    /// The branch in the text of a file.
+    fn read_branch(&self, py: Python<'_>, text: &str) -> PyResult<String> {
+        sealed::check(text.as_bytes()).map_err(bad_input)?;
+        let document: Document<BranchRecord> = serde_json::from_str(text).map_err(bad_input)?;
+        self.written_branch(self.on_thread(py, move |orbits| document.branch(orbits))?)
+    }
+
+    fn resumed(
+        &self,
+        py: Python<'_>,
+        branch: &str,
+        range: (f64, f64),
+        longest_step: f64,
+        most_points: usize,
+    ) -> PyResult<String> {
+        let document: Document<BranchRecord> = serde_json::from_str(branch).map_err(bad_input)?;
+        let options = steps(longest_step, most_points);
+        let found = self.on_thread(py, move |orbits| {
+            orbits.resumed(&document.branch(orbits)?, range.into(), &options)
+        })?;
+        self.written_branch(found)
     }
 
     fn curve(
@@ -111,9 +133,7 @@ impl OrbitSystem {
         longest_step: f64,
     ) -> PyResult<String> {
         let special = self.read_special(special)?;
-        let usual = BranchOptions::default();
-        let first_step = usual.first_step.min(longest_step);
-        let options = BranchOptions { first_step, longest_step, ..usual };
+        let options = steps(longest_step, BranchOptions::default().most_points);
         let work = move |orbits: &Orbits| orbits.curve(&special, parameters, window, &options);
         let found = self.on_thread(py, work)?;
         let document = Document::of_curve(&self.0, "", &found.map_err(exception)?);
@@ -228,14 +248,17 @@ impl OrbitSystem {
 }
 
 impl OrbitSystem {
-    /// What `work` makes on threads of its own, which Ctrl-C does not wait for.
+    /// What `work` makes on threads of its own, which Ctrl-C does not wait for. They end soon then.
     fn on_thread<T: Send + 'static>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&Orbits) -> T + Send + 'static,
     ) -> PyResult<T> {
-        let orbits = Arc::clone(&self.0);
-        watched(py, 0, None, move |_| work(&orbits))
+        let (orbits, stop) = (Arc::clone(&self.0), Arc::new(AtomicBool::new(false)));
+        let theirs = Arc::clone(&stop);
+        let made = watched(py, 0, None, move |_| work(&orbits.until(theirs)));
+        stop.store(made.is_err(), Ordering::Relaxed);
+        made
     }
 
     /// An orbit from its record, solved for again.
@@ -248,6 +271,11 @@ impl OrbitSystem {
     fn read_special(&self, special: &str) -> PyResult<SpecialOrbit> {
         let record: SpecialRecord = serde_json::from_str(special).map_err(bad_input)?;
         record.special(&self.0).map_err(bad_input)
+    }
+
+    fn written_branch(&self, found: Result<Branch, OrbitError>) -> PyResult<String> {
+        let document = Document::of_branch(&self.0, "", &found.map_err(exception)?);
+        sealed::to_string(&document).map_err(failed)
     }
 
     fn written(&self, found: Result<Orbit, OrbitError>) -> PyResult<String> {
@@ -266,7 +294,7 @@ pub struct OrbitMap {
 
 impl OrbitMap {
     fn new(document: Document<OrbitRegions>) -> PyResult<Self> {
-        let text = serde_json::to_string(&document).map_err(failed)?;
+        let text = sealed::to_string(&document).map_err(failed)?;
         let (atlas, names) = document.read().map_err(bad_input)?;
         Ok(Self { atlas, names, text })
     }
@@ -287,6 +315,7 @@ impl OrbitMap {
     /// The regions of a document.
     #[staticmethod]
     fn read(text: &str) -> PyResult<Self> {
+        sealed::check(text.as_bytes()).map_err(bad_input)?;
         Self::new(serde_json::from_str(text).map_err(bad_input)?)
     }
 
@@ -347,6 +376,13 @@ impl OrbitMap {
     fn svg(&self, title: &str) -> String {
         draw_named(&self.atlas, &self.names, title).document()
     }
+}
+
+/// How a branch is followed.
+fn steps(longest_step: f64, most_points: usize) -> BranchOptions {
+    let usual = BranchOptions::default();
+    let first_step = usual.first_step.min(longest_step);
+    BranchOptions { first_step, longest_step, most_points, ..usual }
 }
 
 fn guess(start: &Start) -> Guess<'_> {

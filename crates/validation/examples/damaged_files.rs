@@ -17,8 +17,13 @@ use stickslip_plane::sealed;
 const BALL: &str = "parameter height = 1, e = 0.5, until = 3\nstate x = height, v = 0\nx' = v\n\
                     v' = -1\nwhen x < 0 \"bounce\"\n  x := 0\n  v := -e*v\nend = until\n";
 
+/// Beside a relay, y' = m + n y − y³.
+const CUSP: &str = "parameter m = 0.1, n = 1\nstate x = 0, y = 1\ny' = m + n*y - y^3\nmode up\n  \
+                    x' = 1 - x\n  when x > 0.5 \"up\" -> down\nmode down\n  x' = -1 - x\n  \
+                    when x < -0.5 \"down\" -> up\nstart in up\nend = 9\n";
+
 /// What is made, by which command, and how it is read.
-const FILES: [(&str, &str, Reader); 4] = [
+const FILES: [(&str, &str, Reader); 6] = [
     (
         "family atlas",
         "trace ball.slip --x e=0.2:0.5 --y height=0.9:1.2 --max-events 4 --out",
@@ -31,6 +36,12 @@ const FILES: [(&str, &str, Reader); 4] = [
         document,
     ),
     ("stack over the damping", "stack --kappa 6:7 --psi 0.8:1 --damping 0.3,0.35 --out", document),
+    (
+        "regions of an orbit",
+        "regions cusp.slip --itinerary up,down --x m=-0.3:0.3 --y n=0.5:1 --cells 2 --out",
+        family_atlas,
+    ),
+    ("branch", "branch cusp.slip --itinerary up,down --over m=-0.5:0.5 --out", document),
     ("part of a map", "map --kappa 0:70 --psi 0:2.9 --size 30x20 --part 1/1 --out", part),
 ];
 
@@ -109,14 +120,18 @@ fn damaged(file: &[u8], random: &mut Rng) -> Vec<u8> {
 /// Damages each file so many times, and says what became of it.
 fn battery(times: usize) -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
-    let system = folder.path().join("ball.slip");
-    fs::write(&system, BALL)?;
+    for (name, text) in [("ball.slip", BALL), ("cusp.slip", CUSP)] {
+        fs::write(folder.path().join(name), text)?;
+    }
     for (index, (name, command, read)) in FILES.into_iter().enumerate() {
         let path = folder.path().join(format!("{index}.file"));
         let words = ["stickslip"].into_iter().chain(command.split_whitespace());
-        let words =
-            words.map(|word| if word == "ball.slip" { system.as_os_str() } else { word.as_ref() });
-        stickslip_cli::run(words.chain([path.as_os_str()]))?;
+        let placed = |word: &str| match word {
+            "ball.slip" | "cusp.slip" => folder.path().join(word).into_os_string(),
+            other => other.into(),
+        };
+        let words = words.map(placed);
+        stickslip_cli::run(words.chain([path.as_os_str().to_owned()]))?;
         let file = fs::read(&path)?;
         fs::copy(&path, path.with_extension("whole"))?;
         let whole = read(&path)?;

@@ -30,6 +30,12 @@ pub struct BranchArguments {
     #[arg(long, value_name = "NAME=LO:HI", value_parser = axis, help_heading = "Branch")]
     pub over: Axis,
 
+    /// Go on from both ends of the branch in the file of --near, over an interval that contains its
+    /// own, or from where it broke off; what it has stays
+    #[arg(long, help_heading = "Branch", requires = "near")]
+    #[arg(conflicts_with_all = ["itinerary", "settle", "set", "switch"])]
+    pub resume: bool,
+
     /// The longest step along the branch, of the size of what changes; 1e-7 to 1
     #[arg(long, value_name = "H", help_heading = "Branch", default_value_t = 0.05)]
     #[arg(allow_hyphen_values = true, value_parser = stickslip_files::input::number::parse_option)]
@@ -67,7 +73,7 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
     let BranchArguments { guess, over, out, table, plot, .. } = arguments;
     let (out, table, plot) = (out.as_deref(), table.as_deref(), plot.as_ref());
     let outputs = [("--out", out), ("--table", table), plotted(plot)];
-    require_different(&outputs, &[("the system", Some(&*guess.from.system))])?;
+    require_different(&outputs, &guess.inputs())?;
     table.map_or(Ok(()), CsvFile::probe)?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
@@ -78,12 +84,28 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
         ..BranchOptions::default()
     };
     options.validate().map_err(|error| Failure::Usage(error.to_string()))?;
-    let found = guess.find()?;
+    let (found, known) = match &guess.near {
+        Some(path) if arguments.resume => {
+            guess.branch(path).map(|(found, known)| (found, Some(known)))?
+        }
+        _ => (guess.find()?, None),
+    };
     let system = found.orbits.system();
     let parameter = place(system, "--over", &over.name)?;
     let shown = shown(arguments, &found)?;
     let range = [over.range.low, over.range.high];
-    let branch = found.orbits.branch(&found.orbit, parameter, range, &options).map_err(failure)?;
+    let branch = match known {
+        None => found.orbits.branch(&found.orbit, parameter, range, &options),
+        Some(known) if known.parameter == parameter => {
+            found.orbits.resumed(&known, range, &options)
+        }
+        Some(known) => {
+            let (name, own) = (&over.name, &system.parameters[known.parameter].name);
+            let message = format!("--over {name}: expected {own}, over which the branch goes");
+            return Err(Failure::Usage(message));
+        }
+    };
+    let branch = branch.map_err(failure)?;
     let document = Document::of_branch(&found.orbits, &found.name, &branch);
     let mut stored = Vec::new();
     if let Some(file) = file {
@@ -216,6 +238,7 @@ const EXAMPLES: &str = "\
 Examples:
   stickslip branch examples/orbits/oscillator.slip --itinerary impact,phase --set w=0.8 \
 --over a=0.05:1.2 --out branch.json --plot branch.svg --show v
+  stickslip branch examples/orbits/oscillator.slip --near branch.json --resume --over a=0.05:2
   stickslip branch examples/systems/relay.slip --itinerary down,up --over width=0.1:0.9
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

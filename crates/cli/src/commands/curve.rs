@@ -5,18 +5,17 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
-use stickslip_files::input::{json, source};
+use stickslip_files::input::source;
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_orbits::document::{BRANCH, CurveRecord, Document, OrbitRecord, SpecialRecord};
 use stickslip_orbits::{BranchOptions, Orbits};
-use stickslip_plane::sealed;
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
-use crate::shared::orbit::{MOST_BYTES, failure, special};
+use crate::shared::orbit::{document, failure, special};
 use crate::shared::system::{Axis, axis, place, read, title};
 
 /// Follow special orbits of a system of your own over two parameters
@@ -105,12 +104,10 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
 /// The special orbit of the branch.
 fn read_special(arguments: &CurveArguments) -> Result<SpecialRecord, Failure> {
     let path = &arguments.branch;
-    let unusable = |reason: String| Failure::input(source::shown(path), reason);
-    let text = source::read(path, MOST_BYTES)?;
-    sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
-    let Written { schema, specials } = json::parse(&text).map_err(unusable)?;
+    let Written { schema, specials } = document(path)?;
     if schema != BRANCH {
-        return Err(unusable(format!("schema is {schema:?}; expected {BRANCH:?}")));
+        let reason = format!("schema is {schema:?}; expected {BRANCH:?}");
+        return Err(Failure::input(source::shown(path), reason));
     }
     special(&specials, "--kind", &arguments.kind).cloned()
 }

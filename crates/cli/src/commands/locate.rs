@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_files::input::atlas::{self, AnyAtlas, RunsAtlas};
+use stickslip_files::input::atlas::{self, AnyAtlas, NamedAtlas};
 use stickslip_files::input::parameter::Parameter;
 use stickslip_files::input::recipe::Given;
 use stickslip_files::input::rows::{ByteRecord, Columns, Input, Reading, TwoColumns};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::STANDARD_OUTPUT;
-use stickslip_files::output::rows::{LOCATED, LOCATED_RUNS};
+use stickslip_files::output::rows::{LOCATED, LOCATED_ORBITS, LOCATED_RUNS};
 use stickslip_model::Contact;
 use stickslip_plane::atlas::switch_count;
-use stickslip_solver::margin::Margin;
 use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point};
 
 use crate::error::Failure;
@@ -25,7 +24,7 @@ use crate::shared::threads;
 #[derive(Debug, clap::Args)]
 #[command(long_about = ABOUT, after_long_help = EXAMPLES)]
 pub struct LocateArguments {
-    /// Atlas that the command trace has written; - is standard input
+    /// Atlas that the command trace or regions has written; - is standard input
     #[arg(value_name = "ATLAS.json", required_unless_present = "atlas", help_heading = "Input")]
     pub file: Option<PathBuf>,
 
@@ -81,14 +80,15 @@ pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
     let files = batch.1.map(|input| PointFiles { input, out });
     let atlas = match (atlas::read(path)?, files) {
         (AnyAtlas::Collisions(atlas), _) => atlas,
-        (AnyAtlas::Runs(atlas), Some(files)) => return runs(files, &atlas),
-        (AnyAtlas::Runs(atlas), None) => {
-            let [x, y] = &atlas.names.axes;
-            let expected = format!("expected --batch, a file with the columns {x} and {y}");
-            let message =
-                format!("--kappa is not in the atlas of a system of your own; {expected}");
-            return Err(Failure::Usage(message));
+        (AnyAtlas::Runs(found), Some(files)) => {
+            let count = |label: &Itinerary| label.fired().map(<[_]>::len);
+            return points(files, &found, &LOCATED_RUNS, count);
         }
+        (AnyAtlas::Orbits(found), Some(files)) => {
+            return points(files, &found, &LOCATED_ORBITS, |label| Some(label.0.len()));
+        }
+        (AnyAtlas::Runs(found), None) => return Err(needs_points(found.names.axes())),
+        (AnyAtlas::Orbits(found), None) => return Err(needs_points(found.names.axes())),
     };
     let located = |contact: &Contact| {
         let located = atlas.locate([contact.kappa(), contact.psi()]);
@@ -119,17 +119,29 @@ pub fn run(arguments: &LocateArguments) -> Result<(), Failure> {
     })
 }
 
-/// Locates every point of the input in an atlas of a system of one's own.
-fn runs(files: PointFiles<'_>, found: &RunsAtlas) -> Result<(), Failure> {
-    let RunsAtlas { atlas, names } = found;
-    let points = |header: &_| TwoColumns::named(header, &names.axes, &LOCATED_RUNS);
-    write(files, points, &LOCATED_RUNS, |&(x, y)| {
-        let point = Point::new(x, y);
+fn needs_points([x, y]: [&str; 2]) -> Failure {
+    let expected = format!("expected --batch, a file with the columns {x} and {y}");
+    let message = format!("--kappa is not in the atlas of a system of your own; {expected}");
+    Failure::Usage(message)
+}
+
+/// Locates every point of the input in an atlas of a system of one's own. `count` is what the first
+/// of the columns `results` has for a label.
+fn points<Label: Clone + Ord, Margin: Clone, N: Names<Label, Margin>>(
+    files: PointFiles<'_>,
+    NamedAtlas { atlas, names }: &NamedAtlas<Label, Margin, N>,
+    results: &[&str; 4],
+    count: impl Fn(&Label) -> Option<usize>,
+) -> Result<(), Failure> {
+    let axes = names.axes();
+    let points = |header: &_| TwoColumns::named(header, &axes, results);
+    write(files, points, results, |&(x, y)| {
+        let point = names.point([x, y]);
         let region = region_of(atlas, &point).map(|(region, label)| {
-            let count = label.fired().map_or_else(String::new, |fired| fired.len().to_string());
+            let count = count(label).map_or_else(String::new, |count| count.to_string());
             [count, names.text(label), region.to_string()]
         });
-        let named = |why| format!("{} = {x}, {} = {y} {why}", names.axes[0], names.axes[1]);
+        let named = |why| format!("{} = {x}, {} = {y} {why}", axes[0], axes[1]);
         (region.map_err(named), atlas.plane.vertical_distance(&point))
     })
 }
@@ -191,11 +203,11 @@ fn write<R: Reading>(
     }
 }
 
-/// The region of a point, and what runs do there, or why that is not known.
-fn region_of<'a>(
-    atlas: &'a Atlas<Itinerary, Margin>,
+/// The region of a point, and its label, or why that is not known.
+fn region_of<'a, Label: Clone + Ord, Margin: Clone>(
+    atlas: &'a Atlas<Label, Margin>,
     point: &Point,
-) -> Result<(usize, &'a Itinerary), &'static str> {
+) -> Result<(usize, &'a Label), &'static str> {
     match atlas.plane.locate(point) {
         Location::Outside => Err("lies outside the window"),
         Location::OnBoundary { .. } => Err("lies on a boundary within its error"),
@@ -219,8 +231,9 @@ if its collision has the switches of no region there. The first such point is na
 error, and the exit code is 1.
 
 In an atlas of a system of your own, the columns are the parameters on its axes, and event_count takes \
-the place of switch_count. Nothing is run: within the error of a boundary and in regions in doubt, a \
-point is not located.";
+the place of switch_count; in the regions of a periodic orbit, orbit_count and orbits are what the \
+system follows there. Nothing is run: within the error of a boundary and in regions in doubt, a point \
+is not located.";
 
 /// What `locate --help` says last.
 const EXAMPLES: &str = "\

@@ -46,8 +46,7 @@ pub struct OrbitArguments {
 pub fn run(arguments: &OrbitArguments) -> Result<(), Failure> {
     let OrbitArguments { guess, format, out, plot } = arguments;
     let (out, plot) = (out.as_deref(), plot.as_ref());
-    let system = ("the system", Some(&*guess.from.system));
-    require_different(&[("--out", out), plotted(plot)], &[system])?;
+    require_different(&[("--out", out), plotted(plot)], &guess.inputs())?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
     let found = guess.find()?;
@@ -80,6 +79,7 @@ fn table(out: &mut dyn Write, found: &FoundOrbit, document: &Document<OneOrbit>)
     text::aligned(out, &std::iter::once(header).chain(rows).collect::<Vec<_>>())?;
     writeln!(out)?;
     let multipliers = match &orbit.multipliers {
+        Some(all) if all.is_empty() => "none but the trivial 1".to_owned(),
         Some(all) => all.iter().map(complex).collect::<Vec<_>>().join(", "),
         None => "infinite, at a graze".to_owned(),
     };

@@ -62,8 +62,7 @@ pub struct RegionsArguments {
 pub fn run(arguments: &RegionsArguments) -> Result<(), Failure> {
     let RegionsArguments { guess, x, y, out, plot, .. } = arguments;
     let (out, plot) = (out.as_deref(), plot.as_ref());
-    let inputs = [("the system", Some(&*guess.from.system))];
-    require_different(&[("--out", out), plotted(plot)], &inputs)?;
+    require_different(&[("--out", out), plotted(plot)], &guess.inputs())?;
     plot.map_or(Ok(()), PictureFile::probe)?;
     let file = out.map(OutputFile::create).transpose()?;
     let options = RegionOptions { cells: arguments.cells, ..RegionOptions::default() };

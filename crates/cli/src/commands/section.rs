@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
-use stickslip_figure::canvas::style::{BLUE, INK, VERMILION};
+use stickslip_figure::canvas::shape::Stroke;
+use stickslip_figure::canvas::style::{BLUE, GREEN, INK, PURPLE, VERMILION};
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::StoredFile;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_orbits::{Column, Section, SectionPoint};
+use stickslip_orbits::{Column, Exponents, OrbitError, Section, SectionPoint};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
@@ -59,6 +61,11 @@ pub struct SectionArguments {
     #[arg(value_parser = picture())]
     pub plot: Option<PictureFile>,
 
+    /// Picture of the Lyapunov exponents over the parameter of --over, each run from the start
+    #[arg(long, value_name = "FILE.svg|.png|.pdf", help_heading = "Output", requires = "over")]
+    #[arg(value_parser = picture())]
+    pub exponents: Option<PictureFile>,
+
     /// The components in the picture: two, or one over the parameter [default: the first ones]
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',', help_heading = "Output")]
     #[arg(requires = "plot")]
@@ -75,12 +82,15 @@ pub struct SectionArguments {
 /// The system cannot be read, options do not fit it, a run does not come to its end, or a file or
 /// standard output cannot be written.
 pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
-    let SectionArguments { from, table, plot, .. } = arguments;
-    let (table, plot) = (table.as_deref(), plot.as_ref());
-    let outputs = [("--table", table), plotted(plot)];
+    let SectionArguments { from, table, plot, exponents, .. } = arguments;
+    let (table, plot, exponents) = (table.as_deref(), plot.as_ref(), exponents.as_ref());
+    let shown = ("--exponents", plotted(exponents).1);
+    let outputs = [("--table", table), plotted(plot), shown];
     require_different(&outputs, &[("the system", Some(&*from.system))])?;
     table.map_or(Ok(()), CsvFile::probe)?;
-    plot.map_or(Ok(()), PictureFile::probe)?;
+    for file in [plot, exponents].into_iter().flatten() {
+        file.probe()?;
+    }
     let pool = arguments.threads.pool()?;
     let started = from.read()?;
     let system = started.orbits.system();
@@ -88,7 +98,8 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
     let show = show.collect::<Result<Vec<_>, _>>()?;
     let section = Section { rule: &arguments.rule, skip: arguments.skip, time: arguments.length };
     let (orbits, guess) = (&started.orbits, started.guess());
-    let mut lines = Vec::new();
+    let (mut lines, mut troubled) = (Vec::new(), Vec::new());
+    let mut stored = Vec::new();
     let (found, axis) = if let Some(over) = &arguments.over {
         let parameter = place(system, "--over", &over.name)?;
         let values = (0..arguments.values).map(|k| {
@@ -100,6 +111,19 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
             || orbits.diagram(&started.parameters, &guess, (parameter, &values), &section);
         let found = pool.install(diagram).map_err(failure)?;
         lines.push(("values", values.len().to_string()));
+        if let Some(file) = exponents {
+            let each = || {
+                values.par_iter().map(|value| {
+                    let mut own = started.parameters.clone();
+                    own[parameter] = *value;
+                    (*value, orbits.exponents(&own, &guess, section.skip, section.time))
+                })
+            };
+            let all: Vec<_> = pool.install(|| each().collect());
+            stored.push(file.write(Ok(draw_exponents(&started.name, over, &all)))?);
+            let without = all.iter().filter_map(|(value, own)| Some((*value, own.as_ref().err()?)));
+            troubled.extend(without.map(|(value, error)| format!("at {value:?}: {error}")));
+        }
         (found, Some(&*over.name))
     } else {
         let points = orbits.section(&started.parameters, &guess, &section).map_err(failure)?;
@@ -112,7 +136,6 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
         let column = Column { value: f64::NAN, points, trouble: None };
         ([vec![column], Vec::new()], None)
     };
-    let mut stored = Vec::new();
     if let Some(path) = table {
         stored.push(write_table(path, &started, axis, &found)?);
     }
@@ -123,15 +146,11 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
     deliver(stored, counted(points, "point", "points"))?;
     lines.insert(0, ("points", points.to_string()));
     print(|out| text::pairs(out, &lines))?;
-    let mut troubled = found.iter().flatten().filter_map(|column| {
+    troubled.extend(found.iter().flatten().filter_map(|column| {
         column.trouble.as_ref().map(|reason| format!("at {:?}: {reason}", column.value))
-    });
-    let first = troubled.next().map(|it| {
-        format!(
-            "{}, {it}",
-            counted(1 + troubled.count(), "run has no result", "runs have no result")
-        )
-    });
+    }));
+    let count = counted(troubled.len(), "run has no result", "runs have no result");
+    let first = troubled.first().map(|it| format!("{count}, {it}"));
     Failure::if_doubtful(table.unwrap_or(&from.system), "diagram is", first)
 }
 
@@ -200,6 +219,11 @@ fn draw(
         });
         vec![dots("", points.collect(), BLUE)]
     };
+    chart_of(&format!("{}: where a run meets {rule}", started.name), [&x, &y], series)
+}
+
+/// A picture with room around its points.
+fn chart_of(title: &str, [x, y]: [&str; 2], series: Vec<Series>) -> Svg {
     let range = |of: fn(&(f64, f64)) -> f64| {
         let values = series.iter().flat_map(|it| &it.points).map(of);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -209,13 +233,31 @@ fn draw(
         if low.is_finite() { (low - room, high + room) } else { (0.0, 1.0) }
     };
     let (across, up) = (range(|it| it.0), range(|it| it.1));
-    let title = format!("{}: where a run meets {rule}", started.name);
-    chart::draw(&Chart {
-        title: &title,
-        x: ChartAxis { name: &x, range: across, scale: Scale::Linear },
-        y: ChartAxis { name: &y, range: up, scale: Scale::Linear },
-        series,
-    })
+    let x = ChartAxis { name: x, range: across, scale: Scale::Linear };
+    let y = ChartAxis { name: y, range: up, scale: Scale::Linear };
+    chart::draw(&Chart { title, x, y, series })
+}
+
+/// The picture of exponents over a parameter, and of zero. Those that are −∞ are not drawn.
+fn draw_exponents(name: &str, over: &Axis, all: &[(f64, Result<Exponents, OrbitError>)]) -> Svg {
+    const COLOURS: [&str; 4] = [BLUE, VERMILION, GREEN, PURPLE];
+    let own = all.iter().filter_map(|(value, found)| Some((*value, &found.as_ref().ok()?.values)));
+    let most = own.clone().map(|(_, values)| values.len()).max().unwrap_or(0);
+    let line = |points: Vec<(f64, f64)>, line: Stroke| Series {
+        name: String::new(),
+        points,
+        line: Some(line),
+        mark: None,
+    };
+    let (low, high) = (over.range.low, over.range.high);
+    let mut series = vec![line(vec![(low, 0.0), (high, 0.0)], Stroke::full(INK, 0.6))];
+    for place in 0..most {
+        let points = own.clone().filter_map(|(value, values)| Some((value, *values.get(place)?)));
+        let points = points.filter(|(_, exponent)| exponent.is_finite());
+        series.push(line(points.collect(), Stroke::full(COLOURS[place % COLOURS.len()], 1.4)));
+    }
+    let title = format!("{name}: Lyapunov exponents");
+    chart_of(&title, [&over.name, "exponents, the largest first"], series)
 }
 
 fn dots(name: &str, points: Vec<(f64, f64)>, colour: &'static str) -> Series {

@@ -3,12 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use stickslip_expression::System;
 use stickslip_files::input::{json, number, source};
-use stickslip_orbits::document::{BRANCH, ORBIT, OrbitRecord, SpecialRecord};
-use stickslip_orbits::{Guess, Orbit, OrbitError, Orbits};
+use stickslip_orbits::document::{
+    BRANCH, BranchRecord, Document, ORBIT, OrbitRecord, SpecialRecord,
+};
+use stickslip_orbits::{Branch, Guess, Orbit, OrbitError, Orbits};
 use stickslip_plane::sealed;
 
+use super::files::Named;
 use super::system::{place as parameter, read, setting, time, title, values};
 use crate::error::Failure;
 
@@ -64,7 +68,7 @@ pub struct GuessArguments {
     /// an orbit of the other branch at a branch-point; the first of the kind, or the N-th with
     /// KIND:N
     #[arg(long, value_name = "KIND[:N]", help_heading = "Guess", requires = "near")]
-    #[arg(conflicts_with = "set")]
+    #[arg(conflicts_with_all = ["itinerary", "settle", "set"])]
     pub switch: Option<String>,
 
     /// The durations of the segments; otherwise each is up to where its rule acts
@@ -87,7 +91,7 @@ struct Written {
 /// How far from a special orbit another branch is entered.
 const ASIDE: f64 = 0.05;
 /// Largest number of bytes of a file.
-pub const MOST_BYTES: u64 = 1 << 30;
+const MOST_BYTES: u64 = 1 << 30;
 
 /// A system with the start of its runs.
 #[derive(Debug)]
@@ -153,6 +157,11 @@ impl StartArguments {
 }
 
 impl GuessArguments {
+    /// The files that are read.
+    pub fn inputs(&self) -> [Named<'_>; 2] {
+        [("the system", Some(&*self.from.system)), ("--near", self.near.as_deref())]
+    }
+
     /// Finds the orbit.
     ///
     /// # Errors
@@ -173,17 +182,32 @@ impl GuessArguments {
         Ok(FoundOrbit { name: started.name, orbits: started.orbits, orbit })
     }
 
+    /// The branch in the file of --near, with its system and its last orbit.
+    ///
+    /// # Errors
+    /// [`Failure`]: the system or the branch cannot be read, or the branch is not of the system.
+    pub fn branch(&self, path: &Path) -> Result<(FoundOrbit, Branch), Failure> {
+        let (orbits, name) = self.system()?;
+        let written: Document<BranchRecord> = document(path)?;
+        let unusable = |error: OrbitError| Failure::input(source::shown(path), error);
+        let branch = written.branch(&orbits).map_err(unusable)?;
+        let orbit = branch.points[branch.points.len() - 1].clone();
+        Ok((FoundOrbit { name, orbits, orbit }, branch))
+    }
+
+    /// The orbits of the system, and its name.
+    fn system(&self) -> Result<(Orbits, String), Failure> {
+        let (system, _) = read(&self.from.system)?;
+        let orbits = Orbits::new(&system).map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok((orbits, title(&self.from.system)))
+    }
+
     /// The orbit near that of a file.
     fn near(&self, path: &Path) -> Result<FoundOrbit, Failure> {
-        let (system, _) = read(&self.from.system)?;
-        let system = &system;
-        let shown = source::shown(path);
-        let unusable = |reason: String| Failure::input(shown, reason);
-        let text = source::read(path, MOST_BYTES)?;
-        sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
-        let written: Written = json::parse(&text).map_err(unusable)?;
-        let orbits = Orbits::new(system).map_err(|error| Failure::Usage(error.to_string()))?;
-        let name = title(&self.from.system);
+        let (orbits, name) = self.system()?;
+        let system = orbits.system();
+        let written: Written = document(path)?;
+        let unusable = |reason: String| Failure::input(source::shown(path), reason);
         if let Some(kind) = &self.switch {
             let (BRANCH, Some(points), Some(over)) =
                 (&*written.schema, &written.points, &written.parameter)
@@ -214,6 +238,17 @@ impl GuessArguments {
         let orbit = orbits.continued(&orbit, &parameters).map_err(failure)?;
         Ok(FoundOrbit { name, orbits, orbit })
     }
+}
+
+/// Reads a document of orbits.
+///
+/// # Errors
+/// [`Failure`]: it cannot be read, or has changed since it was written.
+pub fn document<T: DeserializeOwned>(path: &Path) -> Result<T, Failure> {
+    let unusable = |reason: String| Failure::input(source::shown(path), reason);
+    let text = source::read(path, MOST_BYTES)?;
+    sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
+    json::parse(&text).map_err(unusable)
 }
 
 /// The special orbit that an option names: the first one of a kind, or the N-th.

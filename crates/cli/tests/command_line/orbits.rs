@@ -98,6 +98,60 @@ fn a_branch_is_followed_and_written() {
 }
 
 #[test]
+fn a_written_branch_goes_on() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL);
+    let part = "branch ball.slip --itinerary period,bounce --over a=0.018:0.025 --out part.json";
+    let ran = directory.run(part);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(ran.stdout.contains("No special orbit"), "{}", ran.stdout);
+    let ran = directory
+        .run("branch ball.slip --near part.json --resume --over a=0.005:0.05 --out whole.json");
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let [part, whole] = ["part.json", "whole.json"]
+        .map(|name| -> Value { serde_json::from_str(&directory.read(name)).unwrap() });
+    for (kind, value) in [("fold", 0.014043083214), ("flip", 0.029654967002)] {
+        let specials = whole["specials"].as_array().unwrap();
+        let own = specials.iter().find(|it| it["kind"] == kind).expect(kind);
+        assert!((own["value"].as_f64().unwrap() - value).abs() < 1e-11, "{kind}");
+    }
+    // What it had is in it, in one piece.
+    let states = |branch: &Value| -> Vec<Value> {
+        let points = branch["points"].as_array().unwrap();
+        points.iter().map(|it| it["segments"][0]["state"].clone()).collect()
+    };
+    let (part, whole) = (states(&part), states(&whole));
+    assert!(whole.len() > part.len() && whole.windows(part.len()).any(|it| *it == part));
+    let damaged = directory.read("part.json").replacen("\"period\":1.0", "\"period\":1.1", 1);
+    directory.write("damaged.json", &damaged);
+    let mut value: Value = serde_json::from_str(&directory.read("part.json")).unwrap();
+    value.as_object_mut().unwrap().remove("digests");
+    value["points"][3]["segments"][0]["state"][1] = 0.6.into();
+    directory.write("changed.json", value.to_string());
+    directory.write("light.slip", BALL.replace("v' = -1", "v' = -1.01"));
+    directory.write("other.slip", BALL.replace("\"bounce\"", "\"jump\""));
+    directory.run("orbit ball.slip --itinerary period,bounce --out orbit.json");
+    for (arguments, said) in [
+        ("ball.slip --near part.json --resume --over a=0.019:0.03", "contains that of the branch"),
+        ("ball.slip --near part.json --resume --over r=0.6:0.8", "--over r: expected a"),
+        ("ball.slip --near damaged.json --resume --over a=0.01:0.03", "has changed"),
+        ("ball.slip --near changed.json --resume --over a=0.01:0.03", "from an orbit"),
+        ("light.slip --near part.json --resume --over a=0.01:0.03", "from an orbit"),
+        ("other.slip --near part.json --resume --over a=0.01:0.03", "the rule at its place"),
+        ("ball.slip --near orbit.json --resume --over a=0.01:0.03", "missing field"),
+        ("ball.slip --itinerary bounce --resume --over a=0.01:0.03", "--itinerary"),
+        ("ball.slip --resume --over a=0.01:0.03", "--near"),
+        ("ball.slip --settle 9 --switch flip --over a=0.01:0.03", "--settle"),
+        ("ball.slip --near part.json --resume --set r=0.8 --over a=0.01:0.03", "--set"),
+        ("ball.slip --near part.json --resume --over a=0.01:0.03 --out part.json", "same file"),
+    ] {
+        let ran = directory.run(&format!("branch {arguments}"));
+        assert_eq!(ran.code, 2, "{arguments}: {}", ran.stderr);
+        assert!(ran.stderr.contains(said), "{arguments}: {}", ran.stderr);
+    }
+}
+
+#[test]
 fn regions_are_written() {
     let directory = Workspace::new();
     directory.write("ball.slip", BALL);
@@ -113,6 +167,52 @@ fn regions_are_written() {
     assert!(text.contains("stickslip.orbit-regions/1"));
     let picture = directory.read("regions.svg");
     assert!(picture.contains("fold") && picture.contains("stable"));
+    // Points are looked up. The fold is at a = 0.014043 and the flip at 0.029655 for r = 0.7.
+    directory.write("points.csv", "name,r,a\none,0.7,0.0139\ntwo,0.7,0.0142\nthree,0.7,0.0297\n");
+    let located = directory.run("locate regions.json --batch points.csv");
+    assert_eq!(located.code, 0, "{}", located.stderr);
+    let found = rows(&located.stdout);
+    assert_eq!(found[0].join(","), "name,r,a,orbit_count,orbits,region,distance");
+    let found: Vec<String> = found[1..].iter().map(|row| row[3..5].join(",")).collect();
+    assert_eq!(found, ["0,none", "1,stable", "1,unstable"]);
+    directory.write("points.csv", "a,r\n0.02,0.7\n5,0.7\n");
+    let located = directory.run("locate regions.json --batch points.csv --out located.csv");
+    assert_eq!(located.code, 1, "{}", located.stderr);
+    assert!(
+        located.stderr.contains("a = 5, r = 0.7 lies outside the window"),
+        "{}",
+        located.stderr
+    );
+    assert_eq!(rows(&directory.read("located.csv")).len(), 3);
+    let needs = directory.run("locate regions.json --kappa 1 --psi 1");
+    assert!(needs.code == 2 && needs.stderr.contains("the columns a and r"), "{}", needs.stderr);
+    // Files that are damaged, or of another kind.
+    let whole = directory.read("regions.json");
+    let cut: String = whole.chars().take(whole.len() / 2).collect();
+    let renamed = whole.replacen("orbit-regions/1", "orbit-regions/2", 1);
+    let changed = whole.replacen("\"low\":[0.01", "\"low\":[0.02", 1);
+    assert_ne!(changed, whole);
+    let value: Value = serde_json::from_str(&whole).unwrap();
+    let without = |change: &dyn Fn(&mut Value)| {
+        let mut value = value.clone();
+        value.as_object_mut().unwrap().remove("digests");
+        change(&mut value);
+        value.to_string()
+    };
+    let fewer = without(&|it| drop(it["atlas"]["regions"].as_array_mut().unwrap().pop()));
+    let beyond = without(&|it| it["atlas"]["curves"][0]["ends"][0] = 77.into());
+    for (text, said) in [
+        (&cut, "at line 1 column"),
+        (&renamed, "schema"),
+        (&changed, "atlas has changed since the file was written"),
+        (&fewer, "other regions than the document lists"),
+        (&beyond, "77"),
+    ] {
+        directory.write("regions.json", text);
+        let ran = directory.run("locate regions.json --batch points.csv");
+        assert_eq!(ran.code, 2, "{said}: {}", ran.stderr);
+        assert!(ran.stderr.contains(said), "{said}: {}", ran.stderr);
+    }
     let refused = directory.run("regions ball.slip --itinerary period,bounce --x a=0:1 --y a=0:1");
     assert!(refused.code == 2 && refused.stderr.contains("two parameters"), "{}", refused.stderr);
 }
@@ -135,10 +235,12 @@ fn sections_and_basins_are_written() {
     let diagram = |threads: usize| {
         let ran = directory.run(&format!(
             "section ball.slip --rule bounce --skip 50 --for 10 --over a=0.02:0.0204 --values 5 \
-             --table diagram.csv --plot diagram.svg --show v --threads {threads}"
+             --table diagram.csv --plot diagram.svg --exponents exponents.svg --show v \
+             --threads {threads}"
         ));
         assert_eq!(ran.code, 0, "{}", ran.stderr);
         assert!(directory.read("diagram.svg").contains("downwards"));
+        assert!(directory.read("exponents.svg").contains("Lyapunov exponents"));
         directory.read("diagram.csv")
     };
     let alone = diagram(1);

@@ -58,6 +58,8 @@ const STRETCHES: [(Stretch, &str, Stroke); 4] = [
     (Stretch::Unstable, "unstable", Stroke { colour: VERMILION, width: 2.0, dashes: "7 3" }),
     (Stretch::Stable, "stable", Stroke::full(BLUE, 2.4)),
 ];
+/// Places that are closer, in parts of the picture, are one.
+const ONE: f64 = 1e-6;
 const COLOURS: [&str; 5] = [INK, GREEN, PURPLE, ORANGE, SKY];
 const SHAPES: [Shape; 4] = [Shape::Disc, Shape::Ring, Shape::Square, Shape::Cross];
 
@@ -72,22 +74,6 @@ pub fn draw(branch: &BranchCurve<'_>) -> Svg {
             series.push(Series { name: std::mem::take(&mut name), points, line, mark: None });
         }
     }
-    let mut kinds: Vec<&str> = Vec::new();
-    for special in &branch.specials {
-        if !kinds.contains(&special.name) {
-            kinds.push(special.name);
-        }
-    }
-    for (index, kind) in kinds.into_iter().enumerate() {
-        let own = branch.specials.iter().filter(|it| it.name == kind);
-        let colour = COLOURS[index % COLOURS.len()];
-        series.push(Series {
-            name: kind.to_owned(),
-            points: own.map(|it| (it.at[0], it.at[1])).collect(),
-            line: None,
-            mark: Some(Mark { shape: SHAPES[index % SHAPES.len()], colour }),
-        });
-    }
     let axis = |place: usize| {
         let values = branch.points.iter().map(|point| point.at[place]);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -97,7 +83,37 @@ pub fn draw(branch: &BranchCurve<'_>) -> Svg {
         let range = if low.is_finite() { (low - room, high + room) } else { (0.0, 1.0) };
         ChartAxis { name: branch.axes[place], range, scale: Scale::Linear }
     };
-    chart::draw(&Chart { title: branch.title, x: axis(0), y: axis(1), series })
+    let (x, y) = (axis(0), axis(1));
+    let size = [x.range.1 - x.range.0, y.range.1 - y.range.0];
+    for (index, (name, points)) in marked(&branch.specials, size).into_iter().enumerate() {
+        let colour = COLOURS[index % COLOURS.len()];
+        let mark = Some(Mark { shape: SHAPES[index % SHAPES.len()], colour });
+        series.push(Series { name, points, line: None, mark });
+    }
+    chart::draw(&Chart { title: branch.title, x, y, series })
+}
+
+/// Names with the places that have them. Those of one place are one name.
+fn marked(specials: &[SpecialPoint<'_>], size: [f64; 2]) -> Vec<(String, Vec<(f64, f64)>)> {
+    let mut places: Vec<([f64; 2], Vec<&str>)> = Vec::new();
+    for SpecialPoint { name, at, .. } in specials {
+        let near = |place: &[f64; 2]| (0..2).all(|k| (place[k] - at[k]).abs() <= ONE * size[k]);
+        match places.iter_mut().find(|(place, _)| near(place)) {
+            Some((_, names)) if names.contains(name) => {}
+            Some((_, names)) => names.push(name),
+            None => places.push((*at, vec![name])),
+        }
+    }
+    let mut marked: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    for ([x, y], mut names) in places {
+        names.sort_unstable();
+        let name = names.join(", ");
+        match marked.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, points)) => points.push((x, y)),
+            None => marked.push((name, vec![(x, y)])),
+        }
+    }
+    marked
 }
 
 /// The orbits of a branch and the special ones among them, each as the stretch before it.

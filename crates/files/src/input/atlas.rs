@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use serde::Deserialize;
+use stickslip_orbits::document::{self as orbits, OrbitRegions, REGIONS};
+use stickslip_orbits::{FollowedOrbits, OrbitBoundary, OrbitNames};
 use stickslip_plane::atlas::{AtlasDocument, CollisionAtlas, SCHEMA};
 use stickslip_plane::sealed;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Itinerary, RunNames};
+use stickslip_tracer::{Atlas, Itinerary, RunNames};
 
 use super::{json, source};
 use crate::error::FileError;
@@ -20,22 +22,24 @@ struct Schema {
     schema: String,
 }
 
-/// An atlas of either kind.
+/// An atlas of any kind.
 #[derive(Debug)]
 pub enum AnyAtlas {
     /// Of collisions.
     Collisions(Box<CollisionAtlas>),
     /// Of a system of one's own.
-    Runs(Box<RunsAtlas>),
+    Runs(Box<NamedAtlas<Itinerary, Margin, RunNames>>),
+    /// Of the regions of a periodic orbit.
+    Orbits(Box<NamedAtlas<FollowedOrbits, OrbitBoundary, OrbitNames>>),
 }
 
-/// An atlas of a system of one's own.
+/// An atlas with its names.
 #[derive(Debug)]
-pub struct RunsAtlas {
+pub struct NamedAtlas<Label, Margin, Names> {
     /// The atlas.
-    pub atlas: stickslip_tracer::Atlas<Itinerary, Margin>,
+    pub atlas: Atlas<Label, Margin>,
     /// Its names.
-    pub names: RunNames,
+    pub names: Names,
 }
 
 /// Reads an atlas; `-` is standard input.
@@ -52,11 +56,17 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
             json::parse(&text).map_err(unusable)?;
         let names = document.names();
         let atlas = document.atlas().map_err(|error| unusable(error.to_string()))?;
-        return Ok(AnyAtlas::Runs(Box::new(RunsAtlas { atlas, names })));
+        return Ok(AnyAtlas::Runs(Box::new(NamedAtlas { atlas, names })));
+    }
+    if schema == REGIONS {
+        let document: orbits::Document<OrbitRegions> = json::parse(&text).map_err(unusable)?;
+        let (atlas, names) = document.read().map_err(|error| unusable(error.to_string()))?;
+        return Ok(AnyAtlas::Orbits(Box::new(NamedAtlas { atlas, names })));
     }
     if schema != SCHEMA {
         return Err(unusable(format!(
-            "schema is {schema:?}; expected {SCHEMA:?} or {:?}, which stickslip trace writes",
+            "schema is {schema:?}; expected {SCHEMA:?} or {:?}, which stickslip trace writes, or \
+             {REGIONS:?} of stickslip regions",
             stickslip_tracer::SCHEMA
         )));
     }

@@ -17,6 +17,9 @@ pub const LOCATED: [&str; 4] = ["switch_count", "itinerary", "region", "distance
 /// The columns of results where points are located in an atlas of a system of one's own.
 pub const LOCATED_RUNS: [&str; 4] = ["event_count", "itinerary", "region", "distance"];
 
+/// The columns of results where points are located in the regions of a periodic orbit.
+pub const LOCATED_ORBITS: [&str; 4] = ["orbit_count", "orbits", "region", "distance"];
+
 /// The columns of the file of switches.
 pub const EVENTS: [&str; 8] =
     ["case", "index", "time", "time_left", "to", "side", "spring", "velocity"];

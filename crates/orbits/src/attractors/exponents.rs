@@ -8,10 +8,10 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 use stickslip_expression::Graph;
-use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicSwitch, run_dynamic_with};
-use stickslip_solver::{EmbeddedPair, Outcome, Rest};
+use stickslip_solver::dynamic::{DynamicSwitch, run_dynamic_with};
+use stickslip_solver::{EmbeddedPair, Outcome};
 
-use super::{require_end, require_skip};
+use super::{Switches, require_end, require_skip};
 use crate::equations::{EventFormulas, Flow, is_apart};
 use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
@@ -57,7 +57,7 @@ impl Orbits {
         let runnable = self.start(parameters, guess)?;
         let (start, pair) = (runnable.start(), EmbeddedPair::Dop853);
         let from = start.s + skip;
-        let mut found = Switches::default();
+        let mut found = Switches::until(&self.stop);
         let run = run_dynamic_with(pair, &runnable, start, from + time, &self.options, &mut found);
         let run = run.map_err(|error| OrbitError::Run { segment: 0, error })?;
         require_end(run.outcome, run.s)?;
@@ -97,22 +97,6 @@ impl Orbits {
         }
         let events = events.iter().filter(|event| (from..run.s).contains(&event.s)).count();
         Ok(exponents(&marks, events))
-    }
-}
-
-/// The events of a run, and where they accumulate.
-#[derive(Default)]
-struct Switches {
-    events: Vec<DynamicSwitch<usize>>,
-    rest: Option<f64>,
-}
-
-impl DynamicObserver<usize> for Switches {
-    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
-        self.events.push(event.to_switch());
-    }
-    fn on_rest(&mut self, rest: &Rest<usize>) {
-        self.rest = Some(rest.s);
     }
 }
 
@@ -170,6 +154,7 @@ impl<'a> Carrier<'a> {
         least: f64,
     ) -> Result<Vec<f64>, OrbitError> {
         let Self { orbits, parameters, graph, .. } = self;
+        orbits.require_wanted()?;
         let flow =
             self.flows.entry(mode).or_insert_with(|| Flow::new(graph, &orbits.system, mode, &[]));
         let flown = flow.run(parameters, (s, state), duration, &orbits.options);

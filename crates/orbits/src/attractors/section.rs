@@ -1,10 +1,10 @@
 //! Poincaré maps as data, and bifurcation diagrams by brute force.
 
 use stickslip_expression::{InvalidValue, Runnable};
-use stickslip_solver::dynamic::DynamicRun;
+use stickslip_solver::dynamic::{DynamicRun, run_dynamic_with};
 use stickslip_solver::{EmbeddedPair, Outcome, RunError};
 
-use super::{coarse, require_end, require_skip};
+use super::{Switches, coarse, require_end, require_skip};
 use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::settle::require_time;
@@ -80,6 +80,7 @@ impl Orbits {
             let (mut parameters, mut columns) = (parameters.to_vec(), Vec::new());
             let mut last: Option<DynamicRun<usize>> = None;
             for value in values {
+                self.require_wanted()?;
                 if let Some(own) = parameters.get_mut(parameter) {
                     *own = value;
                 }
@@ -136,11 +137,13 @@ impl Orbits {
         places: &[(usize, usize)],
         points: &mut Vec<SectionPoint>,
     ) -> Result<DynamicRun<usize>, RunError> {
-        let (mut events, modes) = (Vec::new(), self.system.modes.len());
-        let from = runnable.start().s + section.skip;
-        let end = from + section.time;
-        let run = runnable.events(EmbeddedPair::Dop853, end, &coarse(), &mut events);
-        let own = events
+        let (mut found, modes) = (Switches::until(&self.stop), self.system.modes.len());
+        let start = runnable.start();
+        let from = start.s + section.skip;
+        let (pair, end) = (EmbeddedPair::Dop853, from + section.time);
+        let run = run_dynamic_with(pair, runnable, start, end, &coarse(), &mut found);
+        let own = found
+            .events
             .into_iter()
             .filter(|event| event.s >= from && places.contains(&(event.from % modes, event.guard)));
         points.extend(own.map(|event| SectionPoint { s: event.s, state: event.before }));

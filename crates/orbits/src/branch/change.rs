@@ -184,12 +184,19 @@ impl Along<'_> {
                 let state = &orbit.segments[segment].state;
                 self.condition(point, (segment, rule), (orbit.time(segment), state))
             }
-            Margin::Inner { segment, rule } => self.least_extremum(point, (segment, rule)),
+            Margin::Inner { segment, rule } => {
+                self.extrema(point, (segment, rule))?.into_iter().min_by(f64::total_cmp)
+            }
         }
     }
 
     /// What a margin is measured by.
     pub fn margin_size(&self, margin: &Margin, point: &Point) -> Option<f64> {
+        if let Margin::Choice { segment } = *margin {
+            // What chooses whether to slide is a rate.
+            let event = &point.evaluation.ends[segment].event;
+            return Some(if event.slides_behind() { event.rate_size() } else { 0.0 });
+        }
         let (Margin::Inner { segment, rule }
         | Margin::AtEnd { segment, rule }
         | Margin::AtStart { segment, rule }) = *margin
@@ -198,7 +205,9 @@ impl Along<'_> {
         };
         let both = [Margin::AtStart { segment, rule }, Margin::AtEnd { segment, rule }];
         let [one, other] = both.map(|it| self.margin(&it, point));
-        Some(one?.abs().max(other?.abs()))
+        let inside = self.extrema(point, (segment, rule))?;
+        let largest = inside.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        Some(largest.max(one?.abs()).max(other?.abs()))
     }
 
     /// The condition of a rule of the mode of a segment, so that it acts as it falls.
@@ -215,9 +224,9 @@ impl Along<'_> {
         Some(if watched.direction == Direction::Rising { -value[0] } else { value[0] })
     }
 
-    /// The least extremum of the condition of a rule inside a segment. The extrema are events of
-    /// its rate, which bounds decide.
-    fn least_extremum(&self, point: &Point, (segment, rule): (usize, usize)) -> Option<f64> {
+    /// The extrema of the condition of a rule inside a segment. They are events of its rate, which
+    /// bounds decide.
+    fn extrema(&self, point: &Point, (segment, rule): (usize, usize)) -> Option<Vec<f64>> {
         let leg = self.equations.legs()[segment];
         let watched = self.watches.of(&self.orbits.system, leg.mode, rule)?;
         let orbit = &point.orbit;
@@ -235,7 +244,7 @@ impl Along<'_> {
         let values = events
             .iter()
             .filter_map(|event| self.condition(point, (segment, rule), (event.s, &event.before)));
-        values.map(|value| sign * value).min_by(f64::total_cmp)
+        Some(values.map(|value| sign * value).collect())
     }
 }
 

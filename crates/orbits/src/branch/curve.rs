@@ -15,7 +15,6 @@ use stickslip_tracer::{Cubic, Node};
 use super::change::Margin;
 use super::point::{Along, Point};
 use super::test::{Test, has_torus};
-use super::watches::Watches;
 use super::{BranchOptions, Half, SpecialKind, SpecialOrbit};
 use crate::equations::Equations;
 use crate::error::OrbitError;
@@ -138,26 +137,12 @@ impl Orbits {
         for (place, range) in parameters.into_iter().zip(window) {
             self.require_range(&special.orbit, place, range)?;
         }
-        let segments = &special.orbit.segments;
-        let segment = special.segment.unwrap_or(0);
-        let expected = format!("one of {} segments", segments.len());
-        InvalidValue::check("the segment", segment, expected, segment < segments.len())?;
-        let rules = self.system.modes.get(segments[segment].leg.mode);
-        let rules = rules.map_or(0, |mode| mode.rules.len());
-        let (rule, expected) = (special.rule.unwrap_or(0), format!("one of {rules} rules"));
-        InvalidValue::check("the rule", rule, expected, special.rule.is_none() || rule < rules)?;
+        special.require_of(self)?;
         let active = [0, 1].map(|k| (parameters[k], window[k][1] - window[k][0]));
         let draft = special.orbit.draft();
         let equations = Equations::new(&self.system, draft.clone(), &active, &self.options)?;
         let (equations, range) = (&equations, window[0]);
-        let along = Along {
-            orbits: self,
-            equations,
-            parameter: one,
-            range,
-            judged: false,
-            watches: Watches::default(),
-        };
+        let along = Along { judged: false, ..Along::new(self, equations, one, range) };
         let follower = Follower { along, special, window, interpolation };
         // The special orbit may have been written and read.
         let start = follower.ahead(&follower.station(equations.place(&draft), None)?, 0.0, None)?;
@@ -170,9 +155,9 @@ impl Orbits {
                 *tangent = tangent.map(|it| -it);
             }
         }
-        let start = follower.finished(&start);
+        let middle = Half { points: vec![follower.finished(&start)], ..Half::default() };
         let Half { points, specials: meetings, closed, objection } =
-            ahead.joined(start, back, |meeting| &mut meeting.behind);
+            ahead.joined(middle, back, |meeting| &mut meeting.behind);
         let kind = special.kind;
         let (points, tangents) = points.into_iter().map(|it| (it.orbit, it.tangent)).unzip();
         Ok(SpecialCurve { kind, parameters, window, points, tangents, meetings, closed, objection })
@@ -231,7 +216,7 @@ impl Follower<'_> {
         loop {
             if half.points.len() + 1 >= options.most_points {
                 let most = options.most_points;
-                half.objection = Some(format!("the curve goes on behind {most} points"));
+                half.object(format!("the curve goes on behind {most} points"));
                 return half;
             }
             let (next, is_last) = match self.next(&last, step) {
@@ -242,12 +227,12 @@ impl Follower<'_> {
                 }
                 Err(error) => {
                     let at = &last.point.orbit.parameters;
-                    half.objection = Some(format!("the curve breaks off at {at:?}: {error}"));
+                    half.object(format!("the curve breaks off at {at:?}: {error}"));
                     return half;
                 }
             };
             let mut meetings = self.meetings(&last, &next).unwrap_or_else(|error| {
-                half.objection = Some(format!("a meeting is not located: {error}"));
+                half.object(format!("a meeting is not located: {error}"));
                 Vec::new()
             });
             let away = &start.point.place - &last.point.place;
@@ -262,7 +247,7 @@ impl Follower<'_> {
             if let Some(place) = resonance {
                 match place {
                     Some(place) => meetings.truncate(place + 1),
-                    None => half.objection = Some("multipliers cease to be complex".to_owned()),
+                    None => half.object("multipliers cease to be complex".to_owned()),
                 }
             }
             let to = match (&resonance, half.closed) {

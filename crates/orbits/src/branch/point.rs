@@ -56,6 +56,19 @@ impl Point {
     }
 }
 
+impl<'a> Along<'a> {
+    /// What follows a branch over a range of a parameter.
+    pub fn new(
+        orbits: &'a Orbits,
+        equations: &'a Equations,
+        parameter: usize,
+        range: [f64; 2],
+    ) -> Self {
+        let watches = Watches::default();
+        Self { orbits, equations, parameter, range, judged: true, watches }
+    }
+}
+
 impl Along<'_> {
     /// The unknown that is the parameter.
     fn last(&self) -> usize {
@@ -92,6 +105,7 @@ impl Along<'_> {
 
     /// A place without direction and verdict.
     pub fn sketch(&self, place: DVector<f64>) -> Result<Point, OrbitError> {
+        self.orbits.require_wanted()?;
         let evaluation = self.equations.at(&place)?;
         let draft = self.equations.draft(&place);
         let orbit = Orbits::sketched(self.equations, &draft, &evaluation, 1e-13);
@@ -113,6 +127,7 @@ impl Along<'_> {
 
     /// The point of the branch that is ahead of another one by a length along its tangent.
     pub fn ahead(&self, from: &Point, length: f64) -> Result<Point, OrbitError> {
+        self.orbits.require_wanted()?;
         let start = &from.place + length * &from.tangent;
         let condition =
             |place: &DVector<f64>| (from.tangent.dot(&(place - &start)), from.tangent.clone());

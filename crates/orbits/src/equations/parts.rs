@@ -49,6 +49,40 @@ pub(crate) fn is_apart(system: &System, legs: &[Leg], place: usize) -> bool {
     is_still || adds && !system.graph.reads(&others).contains(&component)
 }
 
+/// Whether an itinerary gives back the value that a component has at its start, whatever that is:
+/// a discrete state, as one that n := 1 − n turns on and off. It only moves at events, and its next
+/// value is a linear function of itself alone.
+pub(super) fn is_held(system: &System, legs: &[Leg], place: usize, start: f64) -> bool {
+    let component = Variable::Component(narrow(place));
+    let (components, parameters) = (system.components.len(), system.values());
+    let inputs = Inputs { components, parameters: parameters.len(), fixed: true };
+    let mut graph = system.graph.clone();
+    let (mut value, mut by) = (start, 1.0);
+    for leg in legs {
+        if graph.value(system.modes[leg.mode].slopes[place]) != Some(0.0) {
+            return false;
+        }
+        for &(_, change) in leg.rule(system).changes.iter().filter(|(own, _)| *own == place) {
+            let slope = graph.slope(change, &mut |graph, variable| {
+                graph.constant(f64::from(u8::from(variable == component)))
+            });
+            let slope = graph.value(slope);
+            let alone = graph.reads(&[change]).iter().all(|it| *it == component);
+            let (Some(slope), true) = (slope, alone) else { return false };
+            let mut state = vec![0.0; components];
+            state[place] = value;
+            let mut after = [f64::NAN];
+            Program::compile(&graph, &[change], inputs).with(&parameters).run(
+                f64::NAN,
+                &state,
+                &mut after,
+            );
+            (value, by) = (after[0], slope * by);
+        }
+    }
+    by == 1.0 && (value - start).abs() <= f64::EPSILON * start.abs().max(1.0)
+}
+
 /// The number of the tick at the end of each segment.
 pub(super) fn ticks(system: &System, draft: &Draft) -> Result<Vec<Option<f64>>, OrbitError> {
     let starts = draft.starts();

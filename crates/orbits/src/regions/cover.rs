@@ -6,7 +6,6 @@ use stickslip_tracer::Point;
 
 use super::{FollowedOrbits, RegionOptions};
 use crate::branch::point::Along;
-use crate::branch::watches::Watches;
 use crate::branch::{Branch, BranchOptions, SpecialKind, SpecialOrbit};
 use crate::equations::{Draft, Equations, enlarge};
 use crate::error::OrbitError;
@@ -241,15 +240,8 @@ impl<'a> Cover<'a> {
         let active = [(parameter, high - low)];
         let equations = Equations::new(system, draft.clone(), &active, options)?;
         let equations = &equations.enlarged(&self.sizes);
-        let (range, judged) = ([value.min(target), value.max(target)], false);
-        let along = Along {
-            orbits: self.orbits,
-            equations,
-            parameter,
-            range,
-            judged,
-            watches: Watches::default(),
-        };
+        let range = [value.min(target), value.max(target)];
+        let along = Along { judged: false, ..Along::new(self.orbits, equations, parameter, range) };
         let mut last = along.first(&draft)?;
         if (last.tangent[equations.count()] < 0.0) != (target < value) {
             last = last.turned();

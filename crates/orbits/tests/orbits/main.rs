@@ -11,4 +11,5 @@ mod planted;
 mod published;
 mod refused;
 mod regions;
+mod resumed;
 mod sliding;

@@ -78,6 +78,47 @@ fn an_event_at_the_edge_of_sliding() {
     require(&settled(text, [0.2, 0.6]), SpecialKind::SlidingEdge, edge);
 }
 
+/// Two equal relays that know nothing of each other: a difference of their phases stays, so that
+/// their orbit is not stable, though no multiplier is outside the unit circle.
+#[test]
+fn a_neutral_orbit_is_not_stable() {
+    let text = "state x = 0, y = 0, u = 1, w = 1\nx' = u - x\ny' = w - y\nu' = 0\nw' = 0\n\
+                when x*u > 0.5 \"x\"\n  u := -u\nwhen y*w > 0.5 \"y\"\n  w := -w\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let state = [0.0, 0.3, 1.0, 1.0];
+    let itinerary = ["y", "x", "y", "x"];
+    let guess = Guess { itinerary: &itinerary, state: Some(&state), ..Guess::default() };
+    let orbit = orbits.find(&[], &guess);
+    let settled = orbits.settled(&[], &Guess::default(), 100.0).expect("an orbit");
+    // Orbits with any difference are not isolated; with none, both switch at once.
+    for orbit in orbit.into_iter().chain([settled]) {
+        assert!((orbit.period - 2.0 * 3.0_f64.ln()).abs() < 1e-11, "{orbit:?}");
+        let multipliers = orbit.multipliers.clone().expect("no graze");
+        assert!((multipliers[0][0] - 1.0).abs() < 1e-12 && !orbit.is_stable(), "{multipliers:?}");
+    }
+}
+
+/// From a start in the middle, the second round is the orbit: its first one begins elsewhere.
+#[test]
+fn a_second_round_is_near_enough() {
+    let text =
+        "parameter m = 1\nstate x = 0\nx' = m + x^2\nwhen x > 5 \"spike\"\n  x := -5\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["spike"], ..Guess::default() };
+    let orbit = orbits.find(&[1.0], &guess).expect("an orbit");
+    assert!((orbit.period - 2.0 * 5.0_f64.atan()).abs() < 1e-12, "{orbit:?}");
+    // As m falls to 0, the period grows as π/√m.
+    let branch = orbits.branch(&orbit, 0, [0.1, 4.0], &BranchOptions::default()).expect("it");
+    assert_eq!((branch.objection.as_deref(), branch.specials.len()), (None, 0));
+    for orbit in &branch.points {
+        let root = orbit.parameters[0].sqrt();
+        let exact = 2.0 / root * (5.0 / root).atan();
+        assert!((orbit.period - exact).abs() < 1e-9 * exact, "{orbit:?}");
+    }
+}
+
 /// A block sticks while a force m + 0.1 cos φ + 0.5 cos 2φ is less than 1. Its second maximum, at
 /// φ = π, is m + 0.4; the phase may start anew before it while the block sticks.
 #[test]
@@ -110,6 +151,9 @@ fn branches_that_meet() {
         assert!(matches!(found[..], [(SpecialKind::BranchPoint, _)]), "{found:?}");
         assert!(found[0].1.abs() < 1e-10, "{found:?}");
         let special = &branch.specials[0];
+        let said = orbits.curve(special, [0, 1], [[-0.5, 0.5], [0.1, 0.9]], &options);
+        let said = said.expect_err("no curve").to_string();
+        assert!(said.contains("branch-point") && said.contains("not `branch-point`"), "{said}");
         let beside = &branch.points[special.behind - 1];
         let other = orbits.switched(special, beside, 0, 0.05).expect("another branch");
         let [m, y] = [other.parameters[0], other.segments[0].state[2]];
@@ -117,6 +161,65 @@ fn branches_that_meet() {
         let all = orbits.branch(&other, 0, [-0.5, 0.5], &options).expect("a branch");
         let far = all.points.iter().any(|it| it.segments[0].state[2].abs() > 0.45);
         assert!(far && all.objection.is_none(), "{:?}", all.objection);
+    }
+}
+
+/// A relay whose upper limit is m, and m + 0.1 in every other round: `n` is 0 and 1 in turns, and
+/// any n would come back after two rounds.
+#[test]
+fn a_discrete_state_keeps_its_values() {
+    let text = "parameter m = 0.5\nstate x = 0, n = 0\nn' = 0\nmode up\n  x' = 1 - x\n  when x > m \
+                + 0.1*n \"up\" -> down\n    n := 1 - n\nmode down\n  x' = -1 - x\n  when x < -0.5 \
+                \"down\" -> up\nstart in up\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["up", "down", "up", "down"], ..Guess::default() };
+    let found = orbits.find(&[0.5], &guess).expect("an orbit");
+    let settled = orbits.settled(&[0.5], &Guess::default(), 200.0).expect("an orbit");
+    let round = |m: f64| (1.5 / (1.0 - m)).ln() + ((1.0 + m) / 0.5).ln();
+    for orbit in [found, settled] {
+        let error = orbit.period - round(0.5) - round(0.6);
+        assert!(error.abs() < 1e-11 && orbit.is_admissible() && orbit.is_stable(), "{orbit:?}");
+        let mut n = [&orbit.segments[0], &orbit.segments[2]].map(|it| it.state[1]);
+        n.sort_by(f64::total_cmp);
+        assert_eq!(n, [0.0, 1.0]);
+        let branch = orbits.branch(&orbit, 0, [0.1, 0.8], &BranchOptions::default());
+        let branch = branch.expect("a branch");
+        assert_eq!((branch.specials.len(), branch.objection.as_deref()), (0, None));
+        for orbit in &branch.points {
+            let m = orbit.parameters[0];
+            assert!((orbit.period - round(m) - round(m + 0.1)).abs() < 1e-11, "{m}");
+        }
+    }
+    // In one round n has to be 1/2, and a value that is held from the state is no discrete one.
+    let one = Guess { itinerary: &["up", "down"], ..Guess::default() };
+    let orbit = orbits.find(&[0.5], &one).expect("an orbit");
+    assert!((orbit.segments[0].state[1] - 0.5).abs() < 1e-12 && !orbit.is_stable());
+    let sampled = System::parse(&text.replace("n := 1 - n", "n := x - 0.5")).expect("a system");
+    let orbits = Orbits::new(&sampled).expect("orbits");
+    let orbit = orbits.find(&[0.5], &guess).expect("an orbit");
+    // n = x − 1/2 at x = 1/2 + n/10 is 0.
+    assert!(orbit.segments.iter().all(|it| it.state[1].abs() < 1e-11), "{orbit:?}");
+    assert!((orbit.period - 2.0 * round(0.5)).abs() < 1e-10);
+}
+
+/// A run settles late, and its orbit is the one of the first period: a branch over the period of a
+/// clock would have to move its start far.
+#[test]
+fn an_orbit_of_a_clock_begins_early() {
+    let text = "parameter w = 2\nstate x = 0, v = 0\nx' = v\nv' = -x - 0.3*v + 0.5*cos(w*t)\n\
+                every 2*pi/w \"tick\"\nend = 9";
+    let system = System::parse(text).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let orbit = orbits.settled(&[2.0], &Guess::default(), 400.0).expect("an orbit");
+    assert!((0.0..2.0 * PI).contains(&orbit.start) && orbit.is_admissible(), "{orbit:?}");
+    let branch = orbits.branch(&orbit, 0, [0.3, 3.0], &BranchOptions::default()).expect("it");
+    let count = branch.points.len();
+    assert!(count < 1000 && branch.objection.is_none(), "{count}: {:?}", branch.objection);
+    for orbit in &branch.points {
+        let w = orbit.parameters[0];
+        let x = 0.5 * (1.0 - w * w) / ((1.0 - w * w).powi(2) + 0.09 * w * w);
+        assert!((orbit.segments[0].state[0] - x).abs() < 1e-10, "{w}");
     }
 }
 

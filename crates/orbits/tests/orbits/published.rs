@@ -10,6 +10,11 @@ use crate::branches::values;
 /// α = ε = 1 and a force of ±26, over ω from 0.8 to 1.5.
 const BANG_BANG: &str = include_str!("../../../../examples/orbits/bangbang.slip");
 
+/// The same oscillator, in which the mirror image of each half period is taken.
+const BANG_BANG_HALF: &str = "parameter a = 26, w = 1.2\nstate x = 0, v = 0, phase = 0\nx' = v\n\
+    v' = a - 0.2*v - x - x^3\nphase' = w\nwhen phase > pi \"half\"\n  x := -x\n  v := -v\n  \
+    phase := phase - pi\nend = 9";
+
 /// How far an orbit is from its mirror image half a period later.
 fn asymmetry(orbit: &Orbit) -> f64 {
     let [one, other] = [0, 1].map(|k| &orbit.segments[k].state);
@@ -33,6 +38,22 @@ fn a_bang_bang_duffing_oscillator() {
     let meets = primary.specials.iter().filter(|it| it.kind == SpecialKind::BranchPoint);
     let meets: Vec<_> = meets.collect();
     assert!(!meets.is_empty() && !values(&primary, SpecialKind::Fold).is_empty());
+    // The mirror image as the last rule: half of the orbit, whose branch points are flips.
+    let half = System::parse(BANG_BANG_HALF).expect("a system");
+    let halves = Orbits::new(&half).expect("orbits");
+    let own = halves.settled(&half.values(), &Guess::default(), 400.0).expect("an orbit");
+    let mirrored = halves.branch(&own, 1, [0.8, 1.5], &options).expect("a branch");
+    for (kind, other) in
+        [(SpecialKind::Fold, SpecialKind::Fold), (SpecialKind::Flip, SpecialKind::BranchPoint)]
+    {
+        let [one, other] = [values(&mirrored, kind), values(&primary, other)].map(|mut all| {
+            all.sort_by(f64::total_cmp);
+            all
+        });
+        let errors = one.iter().zip(&other).map(|(x, y)| (x - y).abs());
+        println!("{kind:?} {one:?} {other:?}");
+        assert!(one.len() == other.len() && errors.fold(0.0, f64::max) < 1e-9);
+    }
     // "Several secondary branches emanating from branch points", with period doublings. They
     // consist of pairs of mirror images, so that the parameter turns at the branch point.
     let beside = &primary.points[meets[0].behind - 1];

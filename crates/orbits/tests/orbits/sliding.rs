@@ -25,6 +25,16 @@ fn a_block_begins_to_stick() {
     let branch = orbits.branch(&orbit, 0, [0.1, 1.2], &BranchOptions::default()).expect("it");
     let found = values(&branch, SpecialKind::GrazingSliding);
     assert!((found[0] - grazes).abs() < 1e-10, "{found:?} {grazes}");
+    // The graze over the frequency.
+    let special = branch.specials.iter().find(|it| it.kind == SpecialKind::GrazingSliding);
+    let window = [[1.1, 2.0], [0.1, 2.0]];
+    let options = BranchOptions::default();
+    let curve = orbits.curve(special.expect("a graze"), [1, 0], window, &options).expect("it");
+    assert!(curve.points.len() > 20 && curve.objection.is_none(), "{:?}", curve.objection);
+    for orbit in &curve.points {
+        let [a, w] = [orbit.parameters[0], orbit.parameters[1]];
+        assert!((a - (1.0 - w * w).hypot(c * w) / w).abs() < 1e-12, "{a} {w}");
+    }
 
     // Behind it the orbit sticks for a while: one multiplier is 0, the other is near H₁₁.
     let at = |a: f64| {

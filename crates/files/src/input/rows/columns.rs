@@ -104,18 +104,14 @@ impl TwoColumns {
     ///
     /// # Errors
     /// What is wrong with the columns, and what is expected.
-    pub fn named(
-        header: &ByteRecord,
-        axes: &[String; 2],
-        results: &[&str],
-    ) -> Result<Self, String> {
+    pub fn named(header: &ByteRecord, axes: &[&str; 2], results: &[&str]) -> Result<Self, String> {
         let names = names(header, results, &axes.join(","))?;
-        let place = |axis: &String| {
+        let place = |axis: &str| {
             let place = names.iter().position(|name| *name == axis.as_bytes());
             let [x, y] = axes;
             place.ok_or_else(|| format!("{axis} is missing; expected columns {x} and {y}"))
         };
-        Ok(Self([place(&axes[0])?, place(&axes[1])?]))
+        Ok(Self([place(axes[0])?, place(axes[1])?]))
     }
 }
 

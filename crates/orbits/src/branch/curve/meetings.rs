@@ -58,13 +58,16 @@ impl Follower<'_> {
         let length = from.tangent.dot(&(&to.point.place - &from.point.place));
         let mut found: Vec<(f64, Met)> = Vec::new();
         for sought in self.sought(&from.tracked, from) {
-            let values = [from, to].map(|station| {
-                // What is zero at every orbit does not change.
-                let value = self.sought_value(&sought, from, station)?;
-                (value.abs() >= self.least(&sought, station)?).then_some(value)
-            });
+            let values = [from, to].map(|station| self.sought_value(&sought, from, station));
             let [Some(one), Some(other)] = values else { continue };
             if (one < 0.0) == (other < 0.0) || other == 0.0 {
+                continue;
+            }
+            // What is zero at every orbit does not change.
+            let changes = [(from, one), (to, other)].into_iter().all(|(station, value)| {
+                self.least(&sought, station).is_some_and(|least| value.abs() >= least)
+            });
+            if !changes {
                 continue;
             }
             let place = zero((length, one, other), |at| {
