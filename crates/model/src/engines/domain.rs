@@ -28,8 +28,18 @@ const DAMPED: Domain = Domain {
     damping: (1e-8, 1e4),
 };
 
+/// The largest decay of friction. What is faster changes within a step of the velocity that rounding
+/// leaves.
+const MOST_DECAY: f64 = 1e9;
+
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
+    let friction = contact.law().friction;
+    if !friction.is_constant() && friction.decay > MOST_DECAY {
+        let (engine, quantity) = (DAMPED.engine, "the decay of friction");
+        let (value, least, most) = (friction.decay, 0.0, MOST_DECAY);
+        return Err(OutOfDomain { engine, quantity, value, least, most });
+    }
     let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
     if damped { DAMPED.check(contact) } else { UNDAMPED.check(contact) }
 }
