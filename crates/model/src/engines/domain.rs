@@ -31,14 +31,24 @@ const DAMPED: Domain = Domain {
 /// The largest decay of friction. What is faster changes within a step of the velocity that rounding
 /// leaves.
 const MOST_DECAY: f64 = 1e9;
+/// The least part of the static friction that is left at the velocity of the impact. With less a
+/// contact is one without friction, but its limit is lost in rounding.
+const LEAST_SHARE: f64 = 1e-12;
 
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
     let friction = contact.law().friction;
-    if !friction.is_constant() && friction.decay > MOST_DECAY {
-        let (engine, quantity) = (DAMPED.engine, "the decay of friction");
-        let (value, least, most) = (friction.decay, 0.0, MOST_DECAY);
-        return Err(OutOfDomain { engine, quantity, value, least, most });
+    if !friction.is_constant() {
+        let share = friction.share(contact.psi());
+        for (quantity, value, (least, most)) in [
+            ("the decay of friction", friction.decay, (0.0, MOST_DECAY)),
+            ("friction at impact over the static one", share, (LEAST_SHARE, 1.0)),
+        ] {
+            if !(least..=most).contains(&value) {
+                let engine = DAMPED.engine;
+                return Err(OutOfDomain { engine, quantity, value, least, most });
+            }
+        }
     }
     let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
     if damped { DAMPED.check(contact) } else { UNDAMPED.check(contact) }
