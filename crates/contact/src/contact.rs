@@ -35,7 +35,6 @@ fn is_zero(value: &f64) -> bool {
 }
 
 #[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_paper(law: &Law) -> bool {
     *law == Law::PAPER
 }

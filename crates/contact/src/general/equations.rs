@@ -122,11 +122,8 @@ impl Equations {
         let velocity_unit = contact.psi().min(1.0);
         let Friction { dynamic, decay } = contact.law().friction;
         let decays = !contact.law().friction.is_constant();
-        let decay = decays.then(|| Decay {
-            rest: dynamic,
-            excess: 1.0 - dynamic,
-            rate: decay * velocity_unit,
-        });
+        let rate = decay * velocity_unit;
+        let decay = decays.then_some(Decay { rest: dynamic, excess: 1.0 - dynamic, rate });
         Self {
             exponents,
             decay,
@@ -537,13 +534,12 @@ impl Equations {
     pub fn enter(&self, next: Mode, y: &[f64; STATE]) -> [f64; STATE] {
         let u = &powers(y[U]);
         let of = self.exponents.of(next.stage);
-        let size = match next.progress {
-            // The limit is zero, and so is the spring.
-            Progress::Touched => 0.0,
-            _ => {
-                let push = self.push(next.stage, u, y) * next.stage.sign();
-                self.rubbed(next, y, u[self.exponents.d - of.shared] * push)
-            }
+        // Where a contact is touched, the limit is zero, and so is the spring.
+        let size = if next.progress == Progress::Touched {
+            0.0
+        } else {
+            let push = self.push(next.stage, u, y) * next.stage.sign();
+            self.rubbed(next, y, u[self.exponents.d - of.shared] * push)
         };
         let mut y = *y;
         y[TIME] = 0.0;

@@ -4,8 +4,8 @@ use stickslip_model::spheres::{
     Body, BodyPair, Constants, Encounter, Forces, ImpactReport, Material, Sphere,
 };
 use stickslip_model::{
-    CollisionError, Contact, CoulombTest, Damping, End, Engine, Friction, HistoryOf, Law, Normal, Regime,
-    Tangential, presets,
+    CollisionError, Contact, CoulombTest, Damping, End, Engine, Friction, HistoryOf, Law, Normal,
+    Regime, Tangential, presets,
 };
 
 use crate::common::file;

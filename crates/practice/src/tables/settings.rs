@@ -157,7 +157,6 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_paper(law: &Law) -> bool {
     *law == Law::PAPER
 }
