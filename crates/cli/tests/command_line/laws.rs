@@ -59,8 +59,8 @@ fn restitution_is_an_input() {
     assert!(refused.stderr.contains("no damping of this law has e_n = 0.5"), "{}", refused.stderr);
 }
 
-/// Friction that decays with the velocity: as options, in a file of a law, as bodies, and where it is
-/// refused.
+/// Friction that decays with the velocity: as options, in a file of a law, as bodies, and where it
+/// is refused.
 #[test]
 fn decaying_friction_is_a_property_of_every_law() {
     let one = "collide --kappa 30 --psi 0.5 --law gran/hertz/history --format json";
