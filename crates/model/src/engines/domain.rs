@@ -28,8 +28,8 @@ const DAMPED: Domain = Domain {
     damping: (1e-8, 1e4),
 };
 
-/// The largest decay of friction. What is faster changes within a step of the velocity that rounding
-/// leaves.
+/// The largest decay of friction. What is faster changes within a step of the velocity that
+/// rounding leaves.
 const MOST_DECAY: f64 = 1e9;
 /// The least part of the static friction that is left at the velocity of the impact. With less a
 /// contact is one without friction, but its limit is lost in rounding.

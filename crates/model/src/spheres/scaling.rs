@@ -45,8 +45,8 @@ pub struct BodyPair {
     /// k₂/k₁ − 1, or what that is in 1/m of the greatest overlap; see
     /// [`Constants`](super::forces::Constants).
     pub surface: Surface,
-    /// The contact law. The decay of its friction is that at a normal velocity of 1 m/s, to which it
-    /// is proportional.
+    /// The contact law. The decay of its friction is that at a normal velocity of 1 m/s, to which
+    /// it is proportional.
     #[cfg_attr(feature = "serde", serde(default))]
     pub law: Law,
     /// Ratio of tangential and normal damping; 0 in the paper's law.
