@@ -32,8 +32,8 @@ const DAMPED: Domain = Domain {
 /// rounding leaves.
 const MOST_DECAY: f64 = 1e9;
 /// The least part of the static friction that is left at the velocity of the impact. With less a
-/// contact is one without friction, but its limit is lost in rounding.
-const LEAST_SHARE: f64 = 1e-12;
+/// contact is one without friction, but its limit is lost below the least numbers.
+const LEAST_SHARE: f64 = 1e-200;
 
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
