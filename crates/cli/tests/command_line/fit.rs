@@ -126,7 +126,7 @@ fn another_law_in_scaled_units() {
 #[test]
 fn bad_data_and_options_are_refused() {
     let data = "centre_impact_angle_deg,centre_e_t\n10,0.7\n20,0.6\n";
-    let cases: [(&str, &str, &str); 28] = [
+    let cases: [(&str, &str, &str); 29] = [
         ("", "", "is empty; expected a header row"),
         ("centre_impact_angle_deg,centre_e_t\n", "", "has no rows"),
         ("centre_impact_angle_deg,centre_e_t\n10,\n", "", "0 data; expected 1 to"),
