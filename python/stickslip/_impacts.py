@@ -89,7 +89,7 @@ class Surface:
     The paper's law has the first three.
     """
 
-    #: Coefficient of friction.
+    #: Coefficient of friction; the static one where it decays.
     friction: float
     #: Stiffness of the tangential spring in kg/s², where it is constant.
     tangential_stiffness_kg_per_s2: float | None = None
@@ -118,6 +118,10 @@ class Surface:
     e_n: float | None = None
     #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.
     e_n_at_m_per_s: float | None = None
+    #: Coefficient to which friction decays with the tangential velocity, at most friction.
+    dynamic_friction: float | None = None
+    #: That decay in s/m, which goes with it.
+    friction_decay_s_per_m: float | None = None
 
     def _constants(self, law: Law | None) -> str:
         constants = asdict(self)
@@ -445,7 +449,19 @@ def impact(
     engine, shape = (method, rtol, atol), normal.shape
     count = _threads(threads)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
-    if pair.surface.friction == 0:
+    surface = pair.surface
+    if surface.dynamic_friction is not None and surface.friction > 0 and normal.size:
+        if np.ptp(normal) != 0.0:
+            raise ValueError(
+                "dynamic_friction: the scaled decay grows with the normal velocity, and a call has "
+                "one law; expected one normal velocity a call"
+            )
+        alpha, mu = pair._pair.reduction
+        decay = (surface.friction_decay_s_per_m or 0.0) * mu / alpha * float(normal.flat[0])
+        friction = {"dynamic": surface.dynamic_friction / mu, "decay": decay}
+        law = {**_laws.terms(pair.law), "friction": friction}
+        chosen = _laws.arguments(law, pair._pair.tangential_damping)
+    if surface.friction == 0:
         chosen = _laws.arguments(_laws.without_friction(pair.law), 0.0)
 
     def made(

@@ -15,7 +15,9 @@ from stickslip import _native
 #: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz"),
 #: damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening"), tangential
 #: ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
-#: (bool), end ("force", "overlap"), coulomb_test ("total", "spring"). A term that is not given is
+#: (bool), end ("force", "overlap"), coulomb_test ("total", "spring"), and friction, a mapping with
+#: the numbers dynamic, mu_d/mu_s, and decay, B: Coulomb's limit is then
+#: (dynamic + (1 - dynamic) exp(-B |w|)) |F|, and mu of psi is mu_s. A term that is not given is
 #: that of the paper's law.
 Law: TypeAlias = str | Mapping[str, Any]
 
@@ -109,16 +111,21 @@ def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
     return text, float(tangential_damping)
 
 
-def without_friction(law: Law | None) -> Law:
-    """The terms of a law whose contact has no tangential force."""
+def terms(law: Law | None) -> dict[str, Any]:
+    """The terms of a law."""
     if not isinstance(law, str | None):
-        return {**law, "history": "none"}
+        return dict(law)
     name = (law or "paper").removesuffix("+limit_damping")
     known = laws()
     if name not in known:
         raise ValueError(_objection(name))
-    terms = {**known[name].law, "history": "none"}
-    return terms if name == law or law is None else {**terms, "limit_damping": True}
+    found = dict(known[name].law)
+    return found if name == law or law is None else {**found, "limit_damping": True}
+
+
+def without_friction(law: Law | None) -> Law:
+    """The terms of a law whose contact has no tangential force."""
+    return {**terms(law), "history": "none"}
 
 
 @cache
@@ -151,6 +158,11 @@ def _objection(text: str) -> str:
     # A usual term is left out of a law.
     values.setdefault("coulomb_test", {})["total"] = None
     for name, value in terms.items():
+        if name == "friction":
+            numbers = value if isinstance(value, dict) else {}
+            if set(numbers) <= {"dynamic", "decay"} and numbers:
+                continue
+            return f"law: friction = {value!r}; expected the numbers dynamic and decay"
         if name not in values:
             listed = f"{_listed(values)}{_near(name, values)}"
             return f"law: {name!r} is no term; expected one of {listed}"

@@ -44,8 +44,14 @@ def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
         _shade(found, each)
         each.axhline(0.0, color=RULE, linewidth=0.6)
     limit: dict[str, Any] = {"color": RULE, "linestyle": "--", "linewidth": 1.0}
-    forces.plot(time, course["normal_force"], label="friction limit $\\pm F_n$", **limit)
-    forces.plot(time, -course["normal_force"], **limit)
+    most, name = course["normal_force"], "friction limit $\\pm F_n$"
+    friction = found.to_dict()["parameters"].get("law", {}).get("friction")
+    if friction is not None:
+        slow = np.exp(-friction["decay"] * np.abs(course["velocity"]))
+        most = most * (friction["dynamic"] + (1.0 - friction["dynamic"]) * slow)
+        name = "friction limit"
+    forces.plot(time, most, label=name, **limit)
+    forces.plot(time, -most, **limit)
     rows: list[tuple[Any, str, str, Any]] = [
         (forces, "tangential_force", "tangential force $F_t/\\mu$", {"color": COLOURS[0]}),
         (velocities, "velocity", "tangential velocity $w$", {"color": COLOURS[1]}),

@@ -211,6 +211,32 @@ def test_hysteretic_forces() -> None:
         stickslip.collide(3, 0.4, law="granular/jkr")
 
 
+def test_decaying_friction() -> None:
+    usual = stickslip.laws()["gran/hertz/history"].law
+    law = {**usual, "friction": {"dynamic": 0.4, "decay": 5.0}}
+    found = stickslip.collide(30, 0.5, law=law)
+    assert found.eps_t != stickslip.collide(30, 0.5, law=dict(usual)).eps_t
+    assert stickslip.eps_t([30.0], 0.5, law=law).tolist() == [found.eps_t]
+    same = {**usual, "friction": {"dynamic": 1, "decay": 5.0}}
+    assert stickslip.collide(30, 0.5, law=same).eps_t == stickslip.collide(30, 0.5, law=usual).eps_t
+    moments = found.history(moments=50)
+    limit = moments["normal_force"] * (0.4 + 0.6 * np.exp(-5 * np.abs(moments["velocity"])))
+    assert np.all(np.abs(moments["tangential_force"]) < limit + 1e-9)
+    with pytest.raises(ValueError, match="expected the numbers dynamic and decay"):
+        stickslip.collide(30, 0.5, law={**usual, "friction": 0.4})
+    with pytest.raises(ValueError, match="a number from 0 to 1"):
+        stickslip.collide(30, 0.5, law={**usual, "friction": {"dynamic": 2, "decay": 1}})
+    surface = stickslip.Surface(
+        0.5, 4e3, damping_time_s=0, dynamic_friction=0.2, friction_decay_s_per_m=20
+    )
+    grain = stickslip.Sphere(1e-3, stickslip.Material(1e7, 0.3, 2500))
+    bodies = stickslip.Bodies(grain, grain, surface)
+    many = stickslip.impact(bodies, 0.1, [0.2, 0.25])
+    assert many.collisions[1].eps_t == many.eps_t[1]
+    with pytest.raises(ValueError, match="expected one normal velocity a call"):
+        stickslip.impact(bodies, [0.1, 0.2], 0.25)
+
+
 def test_no_friction_and_no_spring() -> None:
     for law in (None, "gran/hooke/history+limit_damping", {"normal": "linear"}):
         assert stickslip.collide(3, ratio=0.7, mu=0, law=law).eps_t == 1

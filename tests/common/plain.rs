@@ -113,6 +113,11 @@ impl Plain {
         elastic + self.eta(x) * v
     }
 
+    /// Coulomb's limit.
+    fn limit(&self, y: &State) -> f64 {
+        self.force(y).abs() * self.0.law().friction.share(y[2])
+    }
+
     fn stiffness(&self, x: f64) -> f64 {
         match self.0.law().tangential {
             Tangential::Constant => self.0.kappa(),
@@ -160,7 +165,7 @@ impl Plain {
         let force = self.force(y);
         let pull = match regime {
             Regime::Stick => self.spring(y) + self.dashpot(y),
-            Regime::Slip(side) => side * force.abs(),
+            Regime::Slip(side) => side * self.limit(y),
         };
         let mut stretch = if self.of_force() { self.stiffness(x) * w } else { w };
         if self.0.law().rescaled && v < 0.0 && x > 0.0 {
@@ -188,14 +193,14 @@ impl Plain {
     /// Whether the spring leaves its limit inwards (slip), or is beyond it (stick).
     fn leaves(&self, regime: Regime, y: &State) -> bool {
         match regime {
-            Regime::Stick => self.trial(y).abs() > self.force(y).abs(),
+            Regime::Stick => self.trial(y).abs() > self.limit(y),
             Regime::Slip(_) if self.0.law().history == HistoryOf::None => {
-                self.trial(y).abs() < self.force(y).abs()
+                self.trial(y).abs() < self.limit(y)
             }
             Regime::Slip(side) => {
                 // What a short stick phase would do, by central differences.
                 let mut start = *y;
-                self.set(&mut start, side * self.force(y).abs());
+                self.set(&mut start, side * self.limit(y));
                 let growth = y[0] / y[1].abs();
                 let short = (1e-3 * growth).min(1e-9);
                 let speed = self.force(&self.step(regime, y, short)) - self.force(y);
@@ -203,7 +208,7 @@ impl Plain {
                 let h = (1e-4 * growth).min(1e-6).min(1e-2 * until_zero);
                 let gap = |h: f64| {
                     let at = self.step(Regime::Stick, &start, h);
-                    self.force(&at).abs() - side * self.trial(&at)
+                    self.limit(&at) - side * self.trial(&at)
                 };
                 gap(h) - gap(-h) > 0.0
             }
@@ -212,7 +217,7 @@ impl Plain {
 
     /// The regime that holds from `y` on, with its history.
     fn correct(&self, y: &mut State, regime: Regime) -> Regime {
-        let limit = self.force(y).abs();
+        let limit = self.limit(y);
         match regime {
             Regime::Slip(side) if self.leaves(regime, y) => {
                 self.set(y, side * limit);

@@ -2,7 +2,7 @@
 
 use stickslip_solver::InvalidValue;
 
-use crate::law::{Damping, Law, Tangential};
+use crate::law::{CoulombTest, Damping, Friction, Law, Tangential};
 
 /// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
 ///
@@ -35,7 +35,6 @@ fn is_zero(value: &f64) -> bool {
 }
 
 #[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_paper(law: &Law) -> bool {
     *law == Law::PAPER
 }
@@ -62,8 +61,9 @@ impl Contact {
     ///
     /// # Errors
     /// [`InvalidValue`]: the tangential damping is out of its range, also for κ = 0 and hysteretic
-    /// forces, the damping has no effect in this law, a contact with this damping never ends, or
-    /// the force is hysteretic and the spring depends on the overlap.
+    /// forces, the damping has no effect in this law, a contact with this damping never ends, the
+    /// force is hysteretic and the spring depends on the overlap, or a number of [`Friction`] is
+    /// out of its range, also for a dashpot beside Coulomb's limit.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
         let Self { damping, kappa, .. } = self;
         let ok = tangential_damping >= 0.0;
@@ -78,6 +78,15 @@ impl Contact {
             _ => "less than 1.1279881355201692: from there on contacts of this law never end",
         };
         in_range("damping", damping, expected, damping < law.endless_from())?;
+        let Friction { dynamic, decay } = law.friction;
+        in_range("dynamic", dynamic, "a number from 0 to 1", (0.0..=1.0).contains(&dynamic))?;
+        in_range("decay", decay, "a finite number, 0 or above", decay >= 0.0)?;
+        if law.coulomb_test == CoulombTest::Spring && !law.friction.is_constant() {
+            let ok = !law.remembers() || damping * tangential_damping == 0.0;
+            let expected = "0: where Coulomb's limit holds for the spring alone, a dashpot beside \
+                            it changes the limit of a friction that decays, which is not computed";
+            in_range("tangential_damping", tangential_damping, expected, ok)?;
+        }
         if law.damping.is_hysteretic() {
             let ok = tangential_damping == 0.0;
             let expected = "0, since a hysteretic force has no dashpot";
@@ -111,7 +120,8 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn without_friction(self) -> Self {
-        Self { tangential_damping: 0.0, law: self.law.without_spring(), ..self }
+        let law = Law { friction: Friction::COULOMB, ..self.law.without_spring() };
+        Self { tangential_damping: 0.0, law, ..self }
     }
 
     /// The same κ, ψ and damping with the paper's law.

@@ -1,7 +1,7 @@
 //! A contact with any law, in coordinates in which everything is smooth.
 //!
 //! With x = uⁿ and dt = n u^{n−1} ds, where n is 1, 2 or 4, the equations of every [`Law`] are
-//! polynomial: du/ds = v, and no root is left. Four things need a mode of their own:
+//! polynomial: du/ds = v, and no root is left. Five things need a mode of their own:
 //!
 //! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
 //!   compression on, history over √x is carried, whose equation is polynomial again.
@@ -10,6 +10,9 @@
 //! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
+//! - Where friction decays with the velocity, its coefficient has a kink where the velocity
+//!   vanishes. The mode has the sign of the velocity ([`Mode::heading`]), and a reversal is an
+//!   event.
 //! - For the same reason a contact may start in slip: [`Beginning`]. The ratio of both forces at
 //!   the start is known in closed form, while a guard near zero would be decided by rounding. So
 //!   this start is not an event, and its margin exists beyond the contacts that start so.
@@ -61,7 +64,8 @@ pub const DASHPOT: usize = 10;
 pub const GUARDS: usize = 5;
 /// Guard of greatest compression, where the history is rescaled or the force hysteretic.
 pub const CREST: usize = 3;
-/// Guard of a reversal of the tangential velocity, which changes nothing.
+/// Guard of a reversal of the tangential velocity. It changes nothing unless friction decays with
+/// the velocity.
 pub const REVERSAL: usize = 4;
 
 /// A contact with any law, as a hybrid system.
@@ -85,6 +89,8 @@ pub struct Mode {
     pub stage: Stage,
     /// How the phase began.
     pub progress: Progress,
+    /// The sign of the tangential velocity, where friction decays with it; otherwise positive.
+    pub heading: Side,
 }
 
 /// Parts of a contact in which the equations differ.
@@ -153,7 +159,8 @@ impl GeneralContact {
             return None;
         }
         // The dashpot's force grows as u^d, that of the reset spring as u^ρ.
-        let excess = self.contact.tangential_damping() * self.contact.psi();
+        let excess = self.contact.tangential_damping() * self.contact.psi()
+            / self.equations.first_limit(self.contact.psi());
         let power = f64::from(e.n) / f64::from(e.of(Stage::Main).rho - e.d);
         Some(((excess + 1.0) / (excess - 1.0)).powf(power))
     }
@@ -192,7 +199,7 @@ impl GeneralContact {
             Beginning::Reset => (Regime::Stick, Side::Positive, Progress::Reset),
             Beginning::Overturned => (Regime::Slip, Side::Negative, Progress::Touched),
         };
-        Mode { regime, side, stage: Stage::Main, progress }
+        Mode { regime, side, stage: Stage::Main, progress, heading: Side::Positive }
     }
 
     /// The state at the start of contact, or soon after it.
@@ -260,7 +267,10 @@ impl GeneralContact {
     /// The tangential force Q against the motion, in units of μ times the scaled normal force.
     pub fn tangential_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
         match mode.regime {
-            Regime::Slip => mode.side.sign() * mode.stage.sign() * self.normal_force(mode, y),
+            Regime::Slip => {
+                let limit = mode.stage.sign() * self.normal_force(mode, y);
+                mode.side.sign() * self.equations.rubbed(mode, array(y), limit)
+            }
             Regime::Stick => self.equations.tangential_force(mode.stage, array(y)),
         }
     }
@@ -295,6 +305,10 @@ impl GeneralContact {
     /// it `slips`.
     pub fn after(&self, mode: Mode, guard: usize, slips: bool) -> Mode {
         let (regime, side, progress) = match (guard, mode.regime) {
+            (REVERSAL, _) => {
+                let heading = mode.heading.opposite();
+                return Mode { heading, progress: Progress::Settled, ..mode };
+            }
             (CREST, _) => {
                 let progress = Progress::Settled;
                 return Mode { stage: Stage::Unloading, progress, ..mode };
@@ -383,8 +397,14 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         };
         let turns = (e.rescaled || e.hysteretic) && mode.stage == Stage::Main;
         let crest = if turns { below } else { Guard::OFF };
-        let reversal = Guard::new(Direction::Either).smooth();
-        [end, same, other, crest, if self.reversals { reversal } else { Guard::OFF }]
+        let reversal = if self.equations.decays() {
+            below
+        } else if self.reversals {
+            Guard::new(Direction::Either).smooth()
+        } else {
+            Guard::OFF
+        };
+        [end, same, other, crest, reversal]
     }
 
     #[inline(always)]
@@ -412,7 +432,12 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         y: &State<STATE>,
     ) -> (Mode, State<STATE>) {
         if guard == REVERSAL {
-            return (mode, *y);
+            if !self.equations.decays() {
+                return (mode, *y);
+            }
+            let mut y = *y;
+            y[W] = 0.0;
+            return (self.after(mode, guard, false), y);
         }
         let slips = mode.regime == Regime::Slip && self.excess_in_tail(mode, y) >= 0.0;
         let next = self.after(mode, guard, slips);

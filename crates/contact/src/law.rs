@@ -14,7 +14,8 @@ use std::fmt;
 ///
 /// A hysteretic force is x while the overlap grows, and (1 + a)(x − x₀) while it falls. b is the
 /// tangential damping. Where |Q| would exceed |F|, dw/dt = −sgn(Q) |F|, and the history is
-/// set such that Q has this size. The source is the text of LAMMPS (29 Sep 2021):
+/// set such that Q has this size; with [`Friction`] that falls with the velocity, the limit is
+/// a part of |F|. The source is the text of LAMMPS (29 Sep 2021):
 /// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`. Laws without history
 /// have the dashpot alone, and in some codes Coulomb's limit holds for the spring alone:
 /// [`CoulombTest`].
@@ -28,7 +29,7 @@ use std::fmt;
 /// assert!(contact.law().spring_energy().creates());
 /// # Ok::<(), stickslip_contact::InvalidValue>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Law {
@@ -50,6 +51,9 @@ pub struct Law {
     /// What Coulomb's limit holds for.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "CoulombTest::is_usual"))]
     pub coulomb_test: CoulombTest,
+    /// How the limit depends on the tangential velocity.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Friction::is_coulomb"))]
+    pub friction: Friction,
 }
 
 /// The elastic part of the normal force.
@@ -145,6 +149,56 @@ impl CoulombTest {
     }
 }
 
+/// Friction that falls with the tangential velocity, from μ_s at rest to μ_d.
+///
+/// The limit is μ(w) |F| with μ(w) = μ_d + (μ_s − μ_d) e^(−B |w|), at every moment, in stick too,
+/// where w is that of the surfaces: a spring that sticks is stretched with it. So slip begins
+/// where |Q| would exceed μ(w) |F|, and ends as with one coefficient, where the spring would fall
+/// behind the limit; w need not be 0 there. In scaled units μ_s is 1, also in ψ = (g_t/g_n) α/μ_s.
+///
+/// Source: Kratos Multiphysics, `DEM_D_Hertz_viscous_Coulomb_CL.cpp` (commit 03f57bf, with
+/// `STATIC_FRICTION`, `DYNAMIC_FRICTION` and `FRICTION_DECAY`), as of its pull request 8518.
+/// Before it, and in MercuryDPM (`SlidingFrictionInteraction.cc`), the limit jumps from μ_s |F| to
+/// μ_d |F| and the spring with it. It sticks again in the next step, so that the force swings
+/// between both limits, infinitely often at the start of a contact that begins in slip: what comes
+/// of that depends on the time step, and has no limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct Friction {
+    /// μ_d/μ_s, from 0 to 1.
+    pub dynamic: f64,
+    /// The decay B, 0 or above: in SI units it is β μ_s g_n/α, where β is that of
+    /// e^(−β |g|) in s/m.
+    pub decay: f64,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self::COULOMB
+    }
+}
+
+impl Friction {
+    /// One coefficient.
+    pub const COULOMB: Self = Self { dynamic: 1.0, decay: 0.0 };
+
+    /// Whether the coefficient is the same at all velocities.
+    pub fn is_constant(&self) -> bool {
+        self.dynamic == 1.0 || self.decay == 0.0
+    }
+
+    /// μ(w)/μ_s at the reduced velocity `w`.
+    pub fn share(&self, w: f64) -> f64 {
+        self.dynamic + (1.0 - self.dynamic) * (-self.decay * w.abs()).exp()
+    }
+
+    #[cfg(feature = "serde")]
+    fn is_coulomb(&self) -> bool {
+        *self == Self::COULOMB
+    }
+}
+
 /// Where a contact ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -207,6 +261,7 @@ impl Law {
         limit_damping: false,
         end: End::Force,
         coulomb_test: CoulombTest::Total,
+        friction: Friction::COULOMB,
     };
 
     /// The equations in scaled units, in one line.
@@ -262,7 +317,13 @@ impl Law {
             End::Force => "F = 0",
             End::Overlap => "x = 0",
         };
-        format!("{normal}; {tangential}; |Q| ≤ |F|{beside}; ends at {end}")
+        let limit = if self.friction.is_constant() {
+            "|F|".to_owned()
+        } else {
+            let Friction { dynamic, decay } = self.friction;
+            format!("({dynamic} + {} e^(−{decay} |w|)) |F|", 1.0 - dynamic)
+        };
+        format!("{normal}; {tangential}; |Q| ≤ {limit}{beside}; ends at {end}")
     }
 
     /// The law without the spring: what becomes of the law as κ vanishes.
@@ -304,7 +365,8 @@ impl Law {
         let elastic = self.normal == Normal::Hertz
             && self.tangential == Tangential::Constant
             && self.remembers()
-            && !self.rescaled;
+            && !self.rescaled
+            && self.friction.is_constant();
         let damped = self.damping == Damping::Viscoelastic
             && tangential_damping == 0.0
             && self.end == End::Force;

@@ -27,7 +27,9 @@ mod result;
 mod serialize;
 
 pub use contact::{Contact, OtherLaw};
-pub use law::{CoulombTest, Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
+pub use law::{
+    CoulombTest, Damping, End, Friction, HistoryOf, Law, Normal, SpringEnergy, Tangential,
+};
 pub use phase::{Regime, Side};
 pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
 pub use stickslip_solver::{GivenValue, InvalidValue};

@@ -1,6 +1,6 @@
 //! Contact laws of particle codes, by the codes' own keywords.
 
-use super::law::{CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential};
+use super::law::{CoulombTest, Damping, End, Friction, HistoryOf, Law, Normal, Tangential};
 
 /// A contact law that has a name.
 ///
@@ -14,7 +14,7 @@ use super::law::{CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential};
 /// assert!(limited.law.limit_damping);
 /// # Ok::<(), &str>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Preset {
     /// The name: keywords of the code.
@@ -56,9 +56,10 @@ pub fn find(name: &str) -> Option<Preset> {
 pub fn refusal(name: &str) -> Option<&'static str> {
     const ADHESION: &str = "adhesion is not computed: with it a contact begins and ends at pull-off, \
                             with a force that jumps, and slow bodies never separate";
-    const ROLLING: &str = "rolling and twisting friction are not computed: they are torques, which act \
-                           on the relative spin and not on the velocity of the surfaces; in one \
-                           impact they change spins by about μ_r/μ of what sliding does";
+    const ROLLING: &str = "rolling and twisting friction are not computed: they are torques. Twisting \
+                           changes the spin about the normal alone; rolling between equal spheres \
+                           changes the difference of their spins and not ε_t, and on a wall the spin \
+                           by μ_r/μ of what sliding does";
     const THORNTON: &str = "Thornton's elastic-plastic force is not computed: it is Hertz' up to a \
                             yield velocity and linear above; walton-braun and \
                             walton-braun/hardening are hysteretic forces that are computed";
@@ -138,7 +139,18 @@ const fn law(
     rescaled: bool,
 ) -> Law {
     let (limit_damping, end, coulomb_test) = (false, End::Overlap, CoulombTest::Total);
-    Law { normal, damping, tangential, history, rescaled, limit_damping, end, coulomb_test }
+    let friction = Friction::COULOMB;
+    Law {
+        normal,
+        damping,
+        tangential,
+        history,
+        rescaled,
+        limit_damping,
+        end,
+        coulomb_test,
+        friction,
+    }
 }
 
 /// A law whose Coulomb test leaves out the dashpot.
@@ -213,6 +225,12 @@ const MFIX_CHECKED: &str = "read in the source, without tangential dashpot: with
                             counts spring and dashpot, but slip sets the spring alone to the \
                             limit, which is no law of these terms; the spring is not rotated with \
                             the contact";
+const KRATOS: &str = "Kratos Multiphysics, DEMApplication: DEM_D_Linear_viscous_Coulomb_CL (commits \
+                      013f925, a40c81b), DEM_D_Hertz_viscous_Coulomb_CL.cpp (commit 03f57bf)";
+const KRATOS_CHECKED: &str = "read in the source, with DAMPING_GAMMA 0: with it there is a tangential \
+                              dashpot too, and slip keeps the spring below the limit, which is no \
+                              law of these terms; STATIC_FRICTION, DYNAMIC_FRICTION and \
+                              FRICTION_DECAY are the friction of a law";
 const YADE: &str = "YADE 2021.01a (copy rohitkjohnedu/my_yade, commit 908aef9): \
                     pkg/dem/HertzMindlin.cpp, ElasticContactLaw.cpp, ViscoelasticPM.cpp";
 const YADE_CHECKED: &str = "read in the source (HertzMindlin.cpp and ViscoelasticPM.cpp also in \
@@ -335,7 +353,7 @@ pub const ALL: &[Preset] = &[
         false,
         MERCURY_PLASTIC,
         "read in the source, with cohesion stiffness and dissipation 0, overlaps below deltaStar, and \
-         equal static and dynamic friction",
+         equal static and dynamic friction, as other ones have no limit of small steps",
     ),
     read_in(
         "MercuryDPM",
@@ -343,7 +361,8 @@ pub const ALL: &[Preset] = &[
         law(Linear, Constant, Spring, Displacement, false),
         true,
         MERCURY,
-        "read in the source, with equal static and dynamic friction",
+        "read in the source, with equal static and dynamic friction: with others the spring falls \
+         back at every slip and sticks at once, which has no limit of small steps",
     ),
     read_in(
         "MercuryDPM",
@@ -369,6 +388,22 @@ pub const ALL: &[Preset] = &[
         false,
         MFIX,
         MFIX_CHECKED,
+    ),
+    read_in(
+        "Kratos",
+        "kratos/DEM_D_Linear_viscous_Coulomb",
+        Law { limit_damping: true, ..law(Linear, Constant, Spring, Force, false) },
+        false,
+        KRATOS,
+        KRATOS_CHECKED,
+    ),
+    read_in(
+        "Kratos",
+        "kratos/DEM_D_Hertz_viscous_Coulomb",
+        Law { limit_damping: true, ..law(Hertz, Tsuji, Mindlin, Force, true) },
+        false,
+        KRATOS,
+        KRATOS_CHECKED,
     ),
     read_in(
         "YADE",

@@ -38,13 +38,14 @@ fn unless_rounding(value: f64, size: f64) -> f64 {
 
 /// Whether a contact is linear: its normal force is F = x + a v, or x without damping, and the
 /// stiffness of its spring is constant, its history not rescaled, and Coulomb's limit holds for
-/// spring and dashpot together.
+/// spring and dashpot together, with one coefficient of friction.
 pub fn solves(contact: &Contact) -> bool {
     let law = contact.law();
     law.normal == Elastic::Linear
         && law.tangential == Tangential::Constant
         && law.remembers()
         && !law.rescaled
+        && law.friction.is_constant()
         && (law.coulomb_test == CoulombTest::Total
             || contact.damping() * contact.tangential_damping() == 0.0)
         && (contact.damping() == 0.0 || law.damping == Damping::Linear)

@@ -265,7 +265,8 @@ fn of_paper_without_tangential_force(contact: &Contact) -> Option<Contact> {
     let (law, damping) = (contact.law(), contact.damping());
     let force = law.remembers() || damping * contact.tangential_damping() > 0.0;
     let (history, tangential) = (Law::PAPER.history, Law::PAPER.tangential);
-    let beside = Law { history, tangential, rescaled: false, ..law };
+    let friction = Law::PAPER.friction;
+    let beside = Law { history, tangential, rescaled: false, friction, ..law };
     let of_paper = !force && beside.acts_as_paper(damping, 0.0);
     // It slides from beginning to end.
     of_paper.then(|| Contact::new(1.0, 3.0, damping).ok()).flatten()

@@ -56,9 +56,9 @@ pub use spheres::Reduction;
 pub use stickslip_contact::domain::OutOfDomain;
 #[doc(inline)]
 pub use stickslip_contact::{
-    Collision, Contact, CoulombTest, Damping, End, EnergyLedger, FEW_SWITCHES, GivenValue,
-    HistoryOf, InvalidValue, Law, Normal, NotFinite, OtherLaw, Regime, Side, SpringEnergy, Switch,
-    Switches, Tangential, general, presets, regularized,
+    Collision, Contact, CoulombTest, Damping, End, EnergyLedger, FEW_SWITCHES, Friction,
+    GivenValue, HistoryOf, InvalidValue, Law, Normal, NotFinite, OtherLaw, Regime, Side,
+    SpringEnergy, Switch, Switches, Tangential, general, presets, regularized,
 };
 #[doc(inline)]
 pub use stickslip_exact::{exact, linear};

@@ -137,7 +137,8 @@ impl Serialize for ScaledParameters<'_> {
         }
         if pair.law != Law::PAPER {
             object.serialize_field("tangential_damping", &contact.tangential_damping())?;
-            object.serialize_field("law", &pair.law)?;
+            let friction = contact.law().friction;
+            object.serialize_field("law", &Law { friction, ..pair.law })?;
         }
         object.serialize_field("time_unit_s", &impact.time_unit_s)?;
         object.serialize_field("length_unit_m", &impact.length_unit_m())?;

@@ -277,8 +277,9 @@ impl CollisionPlane {
         [low, high].map(|corner| self.contact_or_any(&corner))
     }
 
-    /// Refuses planes with a hysteretic force in which a slip may graze its end at greatest
-    /// compression, where this force has a kink.
+    /// Refuses planes whose boundaries may have kinks: those with a friction that decays, which has
+    /// one where the velocity reverses, and those with a hysteretic force in which a slip may graze
+    /// its end at greatest compression, where this force has a kink.
     ///
     /// With the stiffness k = dF/dx a slip is left where s κ w − dF/dt falls through 0, and that
     /// has the rate F (k − κ) at greatest compression: where κ is between both stiffnesses, there
@@ -294,6 +295,11 @@ impl CollisionPlane {
         let (low, high) = (one.min(other), one.max(other));
         let damping = motions.map(|contact| contact.damping()).into_iter().fold(0.0, f64::max);
         let law = self.first.law();
+        if !law.friction.is_constant() {
+            let phrase = "has a friction that decays, with a kink where the velocity reverses, which \
+                          is not traced";
+            return Err(InvalidValue::phrase("the law", phrase, "one coefficient of friction"));
+        }
         if !law.damping.is_hysteretic() || !law.remembers() || damping == 0.0 {
             return Ok(());
         }

@@ -47,7 +47,6 @@ pub struct Grid {
 }
 
 #[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_paper(law: &Law) -> bool {
     *law == Law::PAPER
 }
@@ -140,7 +139,11 @@ impl Grid {
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidValue> {
         let [kappa, psi, damping] = self.parameters(column, row)?;
         let contact = Contact::new(kappa, psi, damping)?;
-        let contact = contact.with_law(self.law, self.tangential_damping)?;
+        let mut law = self.law;
+        if let Coordinates::Velocities { .. } = self.coordinates {
+            law.friction.decay *= self.columns.centre(column);
+        }
+        let contact = contact.with_law(law, self.tangential_damping)?;
         let friction = match self.coordinates {
             Coordinates::Psi { .. } => return Ok(contact),
             Coordinates::Ratio { reduction, .. } => reduction.mu,

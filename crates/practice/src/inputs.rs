@@ -79,7 +79,8 @@ impl Code {
 pub fn lines(code: Code, pair: &BodyPair) -> Text {
     let constants = Constants::new(pair);
     let text = match code {
-        _ if pair.law.damping.is_hysteretic() => Err(HYSTERETIC.to_owned()),
+        _ if pair.law.damping.is_hysteretic() => Err(hysteretic(code).to_owned()),
+        _ if !pair.law.friction.is_constant() => Err(DECAYING.to_owned()),
         Code::Lammps => constants.lammps(),
         Code::Liggghts => constants.liggghts(),
         Code::Yade => constants.yade(),
@@ -89,8 +90,23 @@ pub fn lines(code: Code, pair: &BodyPair) -> Text {
     text.map_err(|reason| format!("{} has no input for these contacts: {reason}", code.name()))
 }
 
-/// Why the inputs of no code are written with a hysteretic force.
-const HYSTERETIC: &str = "its normal force is hysteretic; expected a law with damping or without";
+/// Why the inputs of a code are not written with a hysteretic force.
+fn hysteretic(code: Code) -> &'static str {
+    match code {
+        Code::Liggghts | Code::Mercury => {
+            "its hysteretic force hardens up to an overlap that it must be given (deltaMaxLim, \
+             penetrationDepthMax), with the largest stiffness there, and impacts below it say neither; \
+             expected a law with damping or without"
+        }
+        Code::Lammps | Code::Yade | Code::Mfix => {
+            "it has no hysteretic normal force of this form; expected a law with damping or without"
+        }
+    }
+}
+
+/// Why the inputs of no code are written with a friction that decays.
+const DECAYING: &str =
+    "its friction decays with the velocity; expected one coefficient of friction";
 
 /// The constants of a pair as codes have them.
 struct Constants {

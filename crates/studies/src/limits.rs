@@ -7,8 +7,8 @@ pub const MOST_STIFFNESS: f64 = 1e6;
 
 /// The most cells along an axis of a map.
 pub const MOST_CELLS: usize = 1000;
-/// The most laws.
-pub const MOST_LAWS: usize = 24;
+/// The most laws: a map of each takes about a second, and a page has them one below the other.
+pub const MOST_LAWS: usize = 1000;
 
 /// The stiffnesses of a study of stiff springs: from about 2 on all oscillations are alike, and at
 /// 10¹⁰ a collision has 100 000 switches.

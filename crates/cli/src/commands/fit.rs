@@ -60,7 +60,7 @@ pub struct FitArguments {
 
     /// JSON file of the two bodies as `impact` reads it; motions in it are not used
     #[arg(long, value_name = "FILE.json", help_heading = "Bodies")]
-    #[arg(conflicts_with_all = ["kappa", "mu", "alpha", "damping", "tangential_damping"])]
+    #[arg(conflicts_with_all = ["kappa", "mu", "alpha", "damping", "tangential_damping", "dynamic_friction"])]
     pub bodies: Option<PathBuf>,
 
     /// Speed of all impacts in m/s, with --bodies, if the data do not have it

@@ -212,11 +212,11 @@ fn many(
     batch::run(files, input, &work, "")
 }
 
-/// What computes impacts under a law, whatever their tangential damping.
+/// What computes impacts under a law, whatever their tangential damping and friction.
 struct Engines<'a> {
     /// The name of the law, or its file, if it is given.
     name: Option<&'a str>,
-    /// Without tangential damping, and with it.
+    /// With the law as it is, and with tangential damping or a friction that decays.
     engines: [Engine; 2],
 }
 
@@ -231,7 +231,8 @@ impl<'a> Engines<'a> {
     fn of(&self, encounter: &Encounter) -> Result<Engine, Failure> {
         let damping = encounter.contact().tangential_damping();
         law::permits(self.name, "tangential damping", damping)?;
-        Ok(self.engines[usize::from(damping != 0.0)])
+        let decays = !encounter.contact().law().friction.is_constant();
+        Ok(self.engines[usize::from(damping != 0.0 || decays)])
     }
 }
 
@@ -330,6 +331,7 @@ Other laws have other constants in \"surface\", beside \"friction\":
   hysteretic force       unloading_stiffness_ratio, k2/k1, 1 or above
   hardening              hardening_per_m, (k2/k1 - 1)/(greatest overlap)
   tangential damping     tangential_damping_ratio, without unit [default: 0]
+  decaying friction      dynamic_friction, at most friction, and friction_decay_s_per_m
 
 Velocities: --normal and --tangential, or --speed and --angle, are those of the surfaces of bodies
   without spin. The second body rests, and the first one falls along −z and moves along x. The

@@ -45,7 +45,7 @@ pub struct MapArguments {
 
     /// JSON file of two bodies, as for impact; the axes are then --normal and --tangential
     #[arg(long, value_name = "FILE.json", help_heading = "Window in SI units")]
-    #[arg(conflicts_with_all = ["system", "kappa", "psi", "ratio", "mu", "alpha", "damping", "e_n", "tangential_damping"])]
+    #[arg(conflicts_with_all = ["system", "kappa", "psi", "ratio", "mu", "alpha", "damping", "e_n", "tangential_damping", "dynamic_friction"])]
     pub bodies: Option<PathBuf>,
 
     /// Columns: interval of the normal velocity g_n of the surfaces in m/s, 0 or above

@@ -54,7 +54,7 @@ pub struct TableArguments {
     /// JSON file of two bodies as `impact` reads it, for a table over velocities; motions in it are
     /// not used
     #[arg(long, value_name = "FILE.json", help_heading = "Window of velocities")]
-    #[arg(conflicts_with_all = ["kappa", "psi", "damping", "e_n", "tangential_damping"])]
+    #[arg(conflicts_with_all = ["kappa", "psi", "damping", "e_n", "tangential_damping", "dynamic_friction"])]
     #[arg(requires_all = ["normal", "tangential"])]
     pub bodies: Option<PathBuf>,
 

@@ -126,7 +126,7 @@ fn another_law_in_scaled_units() {
 #[test]
 fn bad_data_and_options_are_refused() {
     let data = "centre_impact_angle_deg,centre_e_t\n10,0.7\n20,0.6\n";
-    let cases: [(&str, &str, &str); 28] = [
+    let cases: [(&str, &str, &str); 29] = [
         ("", "", "is empty; expected a header row"),
         ("centre_impact_angle_deg,centre_e_t\n", "", "has no rows"),
         ("centre_impact_angle_deg,centre_e_t\n10,\n", "", "0 data; expected 1 to"),
@@ -200,6 +200,7 @@ fn bad_data_and_options_are_refused() {
         (data, "--free kappa,mu --mu 0", "expected"),
         (data, "--free kappa,friction", "nothing that can be fitted is named"),
         (data, "--law yade/FrictPhys_CundallStrack --eps-n 0.9", "since this law has no damping"),
+        (data, "--dynamic-friction 0.5 --friction-decay 2", "which is not fitted"),
         (data, "--free damping,mu --kappa 3", "0 data of eps_n for 1 free"),
         (data, "--range kappa=0:3", "cannot be used; expected two rising numbers above 0"),
         (data, "--level 1", "level = 1.0 is out of range"),

@@ -59,6 +59,80 @@ fn restitution_is_an_input() {
     assert!(refused.stderr.contains("no damping of this law has e_n = 0.5"), "{}", refused.stderr);
 }
 
+/// Friction that decays with the velocity: as options, in a file of a law, as bodies, and where it
+/// is refused.
+#[test]
+fn decaying_friction_is_a_property_of_every_law() {
+    let one = "collide --kappa 30 --psi 0.5 --law gran/hertz/history --format json";
+    let options = "--dynamic-friction 0.4 --friction-decay 5";
+    let json = |text: &str| -> Value { serde_json::from_str(text).unwrap() };
+    let found = json(&stickslip(&format!("{one} {options}")).stdout);
+    let friction = json!({ "dynamic": 0.4, "decay": 5.0 });
+    assert_eq!(found["parameters"]["law"]["friction"], friction);
+    assert_ne!(found["eps_t"], json(&stickslip(one).stdout)["eps_t"]);
+    // The paper's law is integrated.
+    let paper = stickslip(&format!("collide --kappa 3 --psi 0.5 {options} --format json"));
+    assert_eq!(json(&paper.stdout)["method"]["name"], "dop853", "{}", paper.stderr);
+
+    let directory = Workspace::new();
+    let mut law = found["parameters"]["law"].clone();
+    directory.write("law.json", law.to_string());
+    let same = directory.run("collide --kappa 30 --psi 0.5 --law law.json --format json");
+    assert_eq!(json(&same.stdout)["eps_t"], found["eps_t"], "{}", same.stderr);
+    law["friction"]["decay"] = json!(-1);
+    directory.write("law.json", law.to_string());
+    let refused = directory.run("collide --kappa 30 --psi 0.5 --law law.json");
+    assert_eq!(refused.code, 2, "{}", refused.stdout);
+    assert!(refused.stderr.contains("decay = -1"), "{}", refused.stderr);
+    for (given, expected) in [
+        ("--dynamic-friction 0.4", "--friction-decay"),
+        ("--dynamic-friction 1.4 --friction-decay 1", "a number from 0 to 1"),
+        ("--dynamic-friction 0.4 --friction-decay -1", "0 or above"),
+    ] {
+        let refused = stickslip(&format!("{one} {given}"));
+        assert_eq!(refused.code, 2);
+        assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    }
+
+    let sphere = json!({
+        "radius_m": 1e-3,
+        "material": { "young_modulus_pa": 1e7, "poisson_ratio": 0.3, "density_kg_per_m3": 2500 },
+    });
+    let bodies = json!({ "spheres": [sphere, sphere], "surface": {
+        "friction": 0.5,
+        "dynamic_friction": 0.2,
+        "friction_decay_s_per_m": 20,
+        "tangential_stiffness_kg_per_s2": 4e3,
+        "damping_time_s": 0,
+    } });
+    directory.write("bodies.json", bodies.to_string());
+    let impact = "impact bodies.json --normal 0.1 --tangential 0.25 --format json";
+    let ran = directory.run(impact);
+    let found = json(&ran.stdout);
+    let friction = &found["parameters"]["law"]["friction"];
+    assert_eq!(friction["dynamic"], 0.4, "{}", ran.stderr);
+    // β μ_s g_n/α.
+    let decay = friction["decay"].as_f64().unwrap();
+    assert!((decay - 20.0 * 0.5 * 0.1 * 3.5).abs() < 1e-12, "{decay}");
+    // A map has the same impacts.
+    let map =
+        "map --bodies bodies.json --normal 0.05:0.15 --tangential 0.2:0.3 --size 1x1 --out m.csv";
+    let ran = directory.run(map);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let text = directory.read("m.csv");
+    let eps_t = format!("{:?}", found["eps_t"].as_f64().unwrap());
+    assert!(text.contains(&eps_t[..12]), "{text} {eps_t}");
+
+    for (command, expected) in [
+        ("trace --kappa 1:4 --psi 0.3:2 --out atlas.json", "is not traced"),
+        ("table --kappa 1:4 --psi 0.3:2 --out table.h --prefix t", "of which no table is made"),
+    ] {
+        let refused = directory.run(&format!("{command} {options}"));
+        assert_ne!(refused.code, 0);
+        assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    }
+}
+
 /// Walton's and Braun's law: as a collision, as bodies, with ε_n as an input, and where it is
 /// refused.
 #[test]

@@ -10,6 +10,7 @@ use super::{
     STATE, Stage, T as TIME, U, V, W,
 };
 use crate::contact::Contact;
+use crate::law::Friction;
 use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side, is_open};
 
 /// The least damping for which the component V is a³(v + u^{p−d}/a); see
@@ -68,6 +69,39 @@ pub(crate) struct Equations {
     tested: f64,
     /// The rate of [`SPRING`] is spring_rate·u^β·[`W`].
     spring_rate: f64,
+    /// How the limit depends on [`W`], if it does.
+    decay: Option<Decay>,
+}
+
+/// The coefficient of friction μ(w) over μ(0): rest + excess·e^(−rate |[`W`]|).
+#[derive(Clone, Copy, Debug)]
+struct Decay {
+    rest: f64,
+    excess: f64,
+    rate: f64,
+}
+
+impl Decay {
+    /// The excess at a velocity with the sign `heading`, and the exponent's slope.
+    #[inline(always)]
+    fn excess_at<T: Number>(&self, heading: Side, w: T) -> (T, f64) {
+        let slope = -self.rate * heading.sign();
+        ((w * slope).exp() * self.excess, slope)
+    }
+
+    /// μ(w)/μ(0).
+    #[inline(always)]
+    fn share<T: Number>(&self, heading: Side, w: T) -> T {
+        self.excess_at(heading, w).0 + self.rest
+    }
+
+    /// The same with its first two derivatives, where those of [`W`] are given.
+    #[inline(always)]
+    fn jet<T: Number>(&self, heading: Side, Jet(w, dw, ddw): Jet<T>) -> Jet<T> {
+        let (excess, slope) = self.excess_at(heading, w);
+        let bend = (dw * dw * slope + ddw) * slope;
+        Jet(excess + self.rest, excess * dw * slope, excess * bend)
+    }
 }
 
 /// A quantity and its first two derivatives with respect to s.
@@ -86,8 +120,13 @@ impl Equations {
         let scale = omega.sqrt().max(1.0);
         let tangential_damping = contact.law().tested_damping(contact.tangential_damping());
         let velocity_unit = contact.psi().min(1.0);
+        let Friction { dynamic, decay } = contact.law().friction;
+        let decays = !contact.law().friction.is_constant();
+        let rate = decay * velocity_unit;
+        let decay = decays.then_some(Decay { rest: dynamic, excess: 1.0 - dynamic, rate });
         Self {
             exponents,
+            decay,
             rebound,
             kappa,
             damping: a,
@@ -126,6 +165,27 @@ impl Equations {
     #[inline(always)]
     pub fn is_frictionless(&self) -> bool {
         !self.exponents.remembers && self.dashpot == 0.0
+    }
+
+    /// Whether friction depends on the velocity.
+    #[inline(always)]
+    pub fn decays(&self) -> bool {
+        self.decay.is_some()
+    }
+
+    /// Coulomb's limit in the mode, if it is `limit` at rest.
+    #[inline(always)]
+    pub fn rubbed<T: Number>(&self, mode: Mode, y: &[T; STATE], limit: T) -> T {
+        match &self.decay {
+            Some(decay) => decay.share(mode.heading, y[W]) * limit,
+            None => limit,
+        }
+    }
+
+    /// Coulomb's limit at the start of contact, if it is 1 at rest.
+    pub fn first_limit(&self, psi: f64) -> f64 {
+        let w = psi / self.velocity_unit;
+        self.decay.as_ref().map_or(1.0, |decay| decay.share(Side::Positive, w))
     }
 
     /// The state at the start of contact.
@@ -190,8 +250,9 @@ impl Equations {
             return [None; 2];
         }
         if e.damped {
-            let ratio = self.tangential_damping * psi;
+            let ratio = self.tangential_damping * psi / self.first_limit(psi);
             let mode = Mode {
+                heading: Side::Positive,
                 regime: Regime::Slip,
                 side: Side::Positive,
                 stage: Stage::Main,
@@ -202,7 +263,7 @@ impl Equations {
             return [Some(1.0 - ratio), may_fall_behind.then(excess)];
         }
         let spring = f64::from(e.n) * self.kappa * psi / f64::from(e.of(Stage::Main).beta + 1);
-        [Some(1.0 - spring), None]
+        [Some(1.0 - spring / self.first_limit(psi)), None]
     }
 
     /// Tangential energy that the dashpot has taken.
@@ -279,6 +340,7 @@ impl Equations {
     #[inline(always)]
     pub fn slip<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
         let (mut slope, dv) = self.normal(mode.stage, &powers(y[U]), y);
+        let dv = self.rubbed(mode, y, dv);
         slope[W] = dv * (mode.side.sign() * mode.stage.sign() / self.velocity_unit);
         slope
     }
@@ -359,6 +421,10 @@ impl Equations {
         let pull1 = spring.1 * self.spring_force + damping1 * self.dashpot;
         let ddw = (lowered(u, k) * v * pull + u[k] * pull1) * per_unit;
         let dashpot = lifted(e.d - of.shared, u, v, dv, Jet(y[W], dw, ddw));
+        let force = match &self.decay {
+            Some(decay) => product(force, decay.jet(mode.heading, Jet(y[W], dw, ddw))),
+            None => force,
+        };
         let pull = self.tested_pull(mode.stage, u, y);
         let pull1 = spring.1 * self.spring_force + damping1 * self.tested;
         let pull2 = spring.2 * self.spring_force + dashpot.2 * self.tested;
@@ -386,12 +452,13 @@ impl Equations {
             Regime::Slip => {
                 let pull = self.tested_pull(mode.stage, u, y) * mode.side.sign();
                 let limit = u[e.d - of.shared] * push * mode.stage.sign();
-                (end, pull - limit, T::from(1.0))
+                (end, pull - self.rubbed(mode, y, limit), T::from(1.0))
             }
             Regime::Stick => {
                 if mode.progress == Progress::Settled {
                     let pull = self.tested_pull(mode.stage, u, y) * mode.side.sign();
                     let limit = u[e.d - of.shared] * push * mode.stage.sign();
+                    let limit = self.rubbed(mode, y, limit);
                     (end, limit - pull, limit + pull)
                 } else {
                     let [near, far] = [y[GAP] * self.scale, y[FAR_GAP] * self.scale];
@@ -401,7 +468,8 @@ impl Equations {
                 }
             }
         };
-        [end, same, other, v, y[W]]
+        let reversal = if self.decays() { y[W] * mode.heading.sign() } else { y[W] };
+        [end, same, other, v, reversal]
     }
 
     /// The guard with which a stick phase is left whose limit has fallen to zero in the state `y`,
@@ -430,16 +498,24 @@ impl Equations {
         let mut sum = power(e.last + e.r + 1) * w * (n * self.kappa * side);
         let ahead = f64::from(of.rho) - f64::from(e.d);
         if ahead != 0.0 {
-            let behind = push * sign - w * (side * self.damping * self.tangential_damping);
+            let behind = self.rubbed(mode, y, push * sign)
+                - w * (side * self.damping * self.tangential_damping);
             sum = sum + power(e.d) * v * behind * ahead;
         }
         if e.bend > 0 {
-            sum = sum - power(e.p) * v * (sign * f64::from(e.bend));
+            sum = sum - self.rubbed(mode, y, power(e.p) * v * (sign * f64::from(e.bend)));
         }
         // On the border of slip, b = 1 is moved by rounding. The term is none then.
         if e.uneven {
             let steep = sign * self.damping * n * (1.0 - self.tangential_damping);
-            sum = sum + power(2 * e.d + e.last + 1) * push * steep;
+            let term = power(2 * e.d + e.last + 1) * push;
+            sum = sum + self.rubbed(mode, y, term * steep);
+            // The limit grows while slip slows down.
+            if let Some(decay) = &self.decay {
+                let (excess, slope) = decay.excess_at(mode.heading, y[W]);
+                let rate = slope / self.velocity_unit * n * side;
+                sum = sum + self.rubbed(mode, y, term * push * excess) * rate;
+            }
         }
         sum
     }
@@ -458,10 +534,12 @@ impl Equations {
     pub fn enter(&self, next: Mode, y: &[f64; STATE]) -> [f64; STATE] {
         let u = &powers(y[U]);
         let of = self.exponents.of(next.stage);
-        let size = match next.progress {
-            // The limit is zero, and so is the spring.
-            Progress::Touched => 0.0,
-            _ => u[self.exponents.d - of.shared] * self.push(next.stage, u, y) * next.stage.sign(),
+        // Where a contact is touched, the limit is zero, and so is the spring.
+        let size = if next.progress == Progress::Touched {
+            0.0
+        } else {
+            let push = self.push(next.stage, u, y) * next.stage.sign();
+            self.rubbed(next, y, u[self.exponents.d - of.shared] * push)
         };
         let mut y = *y;
         y[TIME] = 0.0;
@@ -499,7 +577,7 @@ impl Equations {
         let e = self.exponents;
         let u = &powers(y[U]);
         let [damping, dashpot] = [y[V] * self.force_by_v, y[W] * self.dashpot].map(f64::abs);
-        let terms = u[e.bend] * self.force_by_u + damping + dashpot;
+        let terms = self.rubbed(mode, y, u[e.bend] * self.force_by_u + damping) + dashpot;
         is_open(self.scale * y[GAP].min(y[FAR_GAP]), u[e.d - e.of(mode.stage).shared] * terms)
     }
 
@@ -509,7 +587,7 @@ impl Equations {
         let u = &powers(y[U]);
         let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared]
             * self.push(mode.stage, u, y);
-        let near = (y[GAP] * self.scale).abs() < AT_LIMIT * limit;
+        let near = (y[GAP] * self.scale).abs() < AT_LIMIT * self.rubbed(mode, y, limit);
         mode.regime == Regime::Stick && near && y[RATE] >= 0.0
     }
 
@@ -564,6 +642,12 @@ fn powers<T: Number>(u: T) -> Powers<T> {
         powers[k] = powers[k / 2] * powers[k - k / 2];
     }
     Powers(powers)
+}
+
+/// The product of two quantities, with derivatives.
+#[inline(always)]
+fn product<T: Number>(Jet(a, a1, a2): Jet<T>, Jet(b, b1, b2): Jet<T>) -> Jet<T> {
+    Jet(a * b, a1 * b + a * b1, a2 * b + a1 * b1 * 2.0 + a * b2)
 }
 
 /// d(u^k)/du.

@@ -33,7 +33,8 @@ pub struct Exponents {
     pub r: u8,
     /// Whether there is viscous damping.
     pub damped: bool,
-    /// Whether there is damping with b ≠ 1, so that the dashpots leave a term in the guard of slip.
+    /// Whether there is damping with b ≠ 1, so that the dashpots leave a term in the guard of slip,
+    /// or a friction that decays, which leaves one of the same power.
     pub uneven: bool,
     /// Whether the normal force is hysteretic.
     pub hysteretic: bool,
@@ -76,7 +77,8 @@ impl Exponents {
         };
         let r = if law.tangential == Tangential::Mindlin { half } else { 0 };
         let last = n - 1;
-        let uneven = damped && law.tested_damping(contact.tangential_damping()) != 1.0;
+        let uneven = damped && law.tested_damping(contact.tangential_damping()) != 1.0
+            || !law.friction.is_constant();
         let stage = |down: u8| {
             let (rho, beta) = match law.history {
                 HistoryOf::Displacement => (r + down, last - down),

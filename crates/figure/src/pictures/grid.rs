@@ -67,7 +67,11 @@ fn parameters(grid: &Grid) -> Vec<(&'static str, f64)> {
             ("μ", pair.surface.friction),
             ("α", pair.alpha),
             ("k_t kg/s^2", pair.surface.tangential_stiffness_kg_per_s2),
-            ("A s", pair.surface.damping_time_s),
+            match pair.damping_constant() {
+                ("damping_time_s", time) => ("A s", time),
+                ("unloading_stiffness_ratio", ratio) => ("k₂/k₁", ratio),
+                (_, hardening) => ("hardening 1/m", hardening),
+            },
         ],
     }
 }

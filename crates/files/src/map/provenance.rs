@@ -31,7 +31,7 @@ impl Provenance {
                 ("effective_mass_kg", pair.effective_mass_kg),
                 ("elastic_constant_n_per_m1_5", pair.elastic_constant),
                 ("tangential_stiffness_kg_per_s2", pair.surface.tangential_stiffness_kg_per_s2),
-                ("damping_time_s", pair.surface.damping_time_s),
+                pair.damping_constant(),
             ],
         };
         let law = (grid.law != Law::PAPER).then_some(grid.law);

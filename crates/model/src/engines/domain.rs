@@ -28,8 +28,28 @@ const DAMPED: Domain = Domain {
     damping: (1e-8, 1e4),
 };
 
+/// The largest decay of friction. What is faster changes within a step of the velocity that
+/// rounding leaves.
+const MOST_DECAY: f64 = 1e9;
+/// The least part of the static friction that is left at the velocity of the impact. With less a
+/// contact is one without friction, but its limit is lost below the least numbers.
+const LEAST_SHARE: f64 = 1e-200;
+
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
+    let friction = contact.law().friction;
+    if !friction.is_constant() {
+        let share = friction.share(contact.psi());
+        for (quantity, value, (least, most)) in [
+            ("the decay of friction", friction.decay, (0.0, MOST_DECAY)),
+            ("friction at impact over the static one", share, (LEAST_SHARE, 1.0)),
+        ] {
+            if !(least..=most).contains(&value) {
+                let engine = DAMPED.engine;
+                return Err(OutOfDomain { engine, quantity, value, least, most });
+            }
+        }
+    }
     let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
     if damped { DAMPED.check(contact) } else { UNDAMPED.check(contact) }
 }

@@ -1,6 +1,6 @@
 //! Contact laws in SI units: the constants that belong to a law, and what they mean.
 
-use stickslip_contact::{Damping, InvalidValue, Law, Normal, Tangential};
+use stickslip_contact::{Damping, Friction, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::Surface;
 use super::quantity::{self, Quantity};
@@ -19,12 +19,17 @@ use crate::restitution;
 /// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
 /// F_t = r γ ξ^e g              (without history)
 /// F_n = k ξ, k₂ (ξ − ξ₀)       (hysteretic) while ξ grows and falls; F_t = k_t ζ
+/// μ = μ_d + (μ_s − μ_d) e^(−β |g|)   where friction decays
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Constants {
-    /// Coulomb's coefficient of friction μ.
+    /// Coulomb's coefficient of friction μ; where it decays with the velocity, μ_s.
     pub friction: f64,
+    /// The coefficient μ_d to which friction decays; see [`Friction`].
+    pub dynamic_friction: Option<f64>,
+    /// The decay β in s/m, which goes with [`dynamic_friction`](Self::dynamic_friction).
+    pub friction_decay_s_per_m: Option<f64>,
     /// Stiffness k of a linear normal force in kg/s².
     pub normal_stiffness_kg_per_s2: Option<f64>,
     /// Elastic constant ρ of Hertz' force in kg/(s² √m); `None` takes the constant of the
@@ -122,6 +127,7 @@ impl Forces {
     pub fn new(law: Law, constants: &Constants) -> Result<Self, CollisionError> {
         let c = constants;
         let friction = quantity::FRICTION.check(c.friction)?;
+        let law = Law { friction: decaying(law, c)?, ..law };
         let elastic = match law.normal {
             Normal::Linear => {
                 unused(&quantity::HERTZ_STIFFNESS, c.hertz_stiffness_kg_per_s2_m0_5)?;
@@ -276,6 +282,28 @@ fn without_damping(law: Law, has_time: bool, has_ratio: bool) -> InvalidValue {
         (false, false) => "it or e_n",
     };
     missing(quantity::DAMPING_COEFFICIENT.name, expected)
+}
+
+/// The friction of the constants, with the decay β in s/m.
+fn decaying(law: Law, constants: &Constants) -> Result<Friction, InvalidValue> {
+    let (rest, decay) = (&quantity::DYNAMIC_FRICTION, &quantity::FRICTION_DECAY);
+    if law.friction != Friction::COULOMB {
+        let phrase = "has a friction of scaled numbers";
+        let expected = format!("{} and {} of the bodies instead", rest.name, decay.name);
+        return Err(InvalidValue::phrase("the law", phrase, expected));
+    }
+    let dynamic = match (constants.dynamic_friction, constants.friction_decay_s_per_m) {
+        (None, None) => return Ok(Friction::COULOMB),
+        (None, Some(_)) => return Err(missing(rest.name, decay.name)),
+        (Some(_), None) => return Err(missing(decay.name, rest.name)),
+        (Some(dynamic), Some(_)) => rest.check(dynamic)?,
+    };
+    let decay = required(decay, constants.friction_decay_s_per_m)?;
+    let ok = dynamic <= constants.friction;
+    InvalidValue::check(rest.name, dynamic, rest.expected, ok)?;
+    // Without friction nothing decays.
+    let dynamic = if constants.friction > 0.0 { dynamic / constants.friction } else { 1.0 };
+    Ok(Friction { dynamic, decay })
 }
 
 fn missing(name: &'static str, expected: &str) -> InvalidValue {

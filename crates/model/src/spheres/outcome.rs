@@ -155,7 +155,8 @@ impl Encounter {
                 side: switch.side,
                 spring_m,
                 velocity_m_per_s: impact.velocity_m_per_s(switch.velocity),
-                normal_force_n: pull_n.abs() / surface.friction,
+                normal_force_n: pull_n.abs()
+                    / (surface.friction * impact.contact.law().friction.share(switch.velocity)),
                 tangential_force_n: -pull_n,
             }
         };

@@ -43,6 +43,14 @@ pub const DENSITY: Quantity = positive("density_kg_per_m3", "a finite number abo
 /// Coulomb's coefficient of friction μ.
 pub const FRICTION: Quantity =
     not_negative("friction", "a finite number, 0 or above, without unit");
+/// Dynamic coefficient of friction μ_d, at most the static one.
+pub const DYNAMIC_FRICTION: Quantity = not_negative(
+    "dynamic_friction",
+    "a finite number, 0 or above and at most friction, without unit",
+);
+/// Decay β of friction from μ_s to μ_d, as e^(−β |g|).
+pub const FRICTION_DECAY: Quantity =
+    not_negative("friction_decay_s_per_m", "a finite number, 0 or above, in s/m");
 /// Tangential inertia α of two bodies.
 pub const INERTIA: Quantity =
     Quantity { name: "alpha", expected: "a number above 0, at most 1", range: Range::Share };

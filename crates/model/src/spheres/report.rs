@@ -58,7 +58,7 @@ pub struct Comparison {
     /// ε_n by [`normal::pade`]; `None` unless the normal force is the paper's.
     pub eps_n_pade: Option<f64>,
     /// ε_t of pure Coulomb sliding with the ε_n of the collision, [`coulomb::restitution`]; `None`
-    /// in a central impact, or if the normal force may attract.
+    /// in a central impact, or if the normal force may attract or friction decays.
     pub eps_t_coulomb: Option<f64>,
     /// [`Impact::mindlin_stiffness_kg_per_s2`](super::Impact::mindlin_stiffness_kg_per_s2); `None`
     /// where the normal force is linear.
@@ -146,11 +146,12 @@ impl Comparison {
         let viscoelastic = law.damping == Damping::Viscoelastic && law.end == End::Force;
         let of_paper = hertz && (viscoelastic || !damped);
         let viscous = damped && law.damping.is_viscous();
+        let steady = law.friction.is_constant();
         let attracts = viscous && law.end == End::Overlap && !law.limit_damping;
         Self {
             eps_n_series: of_paper.then(|| normal::series(contact.damping())),
             eps_n_pade: of_paper.then(|| normal::pade(contact.damping())),
-            eps_t_coulomb: outcome.eps_t.filter(|_| !attracts).map(coulomb),
+            eps_t_coulomb: outcome.eps_t.filter(|_| !attracts && steady).map(coulomb),
             mindlin_stiffness_kg_per_s2: hertz.then(|| impact.mindlin_stiffness_kg_per_s2()),
             mindlin_kappa: hertz.then(|| impact.pair.mindlin_kappa()),
             undamped_compression_m: impact.largest_compression_m(),

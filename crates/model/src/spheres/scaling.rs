@@ -3,7 +3,7 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
-use stickslip_contact::{Contact, InvalidValue, Law, Normal, Tangential};
+use stickslip_contact::{Contact, Damping, Friction, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::{Body, Material, Reduction, Sphere, Surface};
 use super::forces::Forces;
@@ -45,7 +45,8 @@ pub struct BodyPair {
     /// k₂/k₁ − 1, or what that is in 1/m of the greatest overlap; see
     /// [`Constants`](super::forces::Constants).
     pub surface: Surface,
-    /// The contact law.
+    /// The contact law. The decay of its friction is that at a normal velocity of 1 m/s, to which
+    /// it is proportional.
     #[cfg_attr(feature = "serde", serde(default))]
     pub law: Law,
     /// Ratio of tangential and normal damping; 0 in the paper's law.
@@ -89,14 +90,17 @@ impl BodyPair {
         let (elastic_constant, surface) =
             forces.resolved(effective_mass_kg, hertz, 1.5 * stiffness_ratio * hertz);
         surface.validate()?;
+        let alpha = 1.0 / (1.0 + effective_mass_kg * (one.turning + two.turning));
+        let Friction { dynamic, decay } = forces.law.friction;
+        let friction = Friction { dynamic, decay: decay * surface.friction / alpha };
         let pair = Self {
             effective_mass_kg,
             effective_radius_m,
             elastic_constant,
             stiffness_ratio,
-            alpha: 1.0 / (1.0 + effective_mass_kg * (one.turning + two.turning)),
+            alpha,
             surface,
-            law: forces.law,
+            law: Law { friction, ..forces.law },
             tangential_damping_ratio: forces.tangential_damping_ratio,
         };
         for (name, value) in [
@@ -128,6 +132,19 @@ impl BodyPair {
     /// Scaled tangential damping b, the ratio of the dampings over α.
     pub fn tangential_damping(&self) -> f64 {
         self.tangential_damping_ratio / self.alpha
+    }
+
+    /// The name and the value of what [`Surface::damping_time_s`] of the pair stands for: a damping
+    /// time, or a constant of a hysteretic force.
+    ///
+    /// [`Surface::damping_time_s`]: super::bodies::Surface::damping_time_s
+    pub fn damping_constant(&self) -> (&'static str, f64) {
+        let constant = self.surface.damping_time_s;
+        match self.law.damping {
+            Damping::Hysteretic => (quantity::UNLOADING_RATIO.name, 1.0 + constant),
+            Damping::Hardening => (quantity::HARDENING.name, constant),
+            _ => (quantity::DAMPING_TIME.name, constant),
+        }
     }
 
     /// The number μ by which tangential velocities are reduced: 1 where there is no friction.
@@ -166,7 +183,8 @@ impl BodyPair {
         {
             InvalidValue::check(name, value, POSITIVE, value > 0.0 && value.is_finite())?;
         }
-        let Self { law, alpha, .. } = *self;
+        let Self { mut law, alpha, .. } = *self;
+        law.friction.decay *= normal_m_per_s;
         let beta = self.elastic_constant / self.effective_mass_kg;
         let units = Units::new(law, beta, normal_m_per_s);
         let Units { time, length, .. } = units;

@@ -65,7 +65,7 @@ pub fn laws() -> Vec<Law> {
                                 rescaled,
                                 limit_damping,
                                 end,
-                                coulomb_test: CoulombTest::Total,
+                                ..Law::PAPER
                             });
                         }
                     }

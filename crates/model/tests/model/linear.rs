@@ -19,6 +19,7 @@ const ATTRACTING: Law = Law {
     limit_damping: false,
     end: End::Overlap,
     coulomb_test: CoulombTest::Total,
+    friction: Law::PAPER.friction,
 };
 const LIMITED: Law = Law { limit_damping: true, ..ATTRACTING };
 const TO_ZERO_FORCE: Law = Law { end: End::Force, ..ATTRACTING };

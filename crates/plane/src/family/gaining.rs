@@ -6,7 +6,7 @@
 //! |ε_t|.
 
 use stickslip_model::CollisionError;
-use stickslip_model::general::CREST;
+use stickslip_model::general::{CREST, REVERSAL};
 use stickslip_solver::margin::{Exit, Margin, Place};
 use stickslip_tracer::{Family, FreeRun, Point};
 
@@ -97,7 +97,8 @@ impl Family for GainingFamily {
         let FreeRun { label, mut margins } = self.0.free_run(point);
         // Margins of the last phase have all exits.
         let is_whole = |exits: &Vec<Exit>| {
-            exits.iter().filter(|exit| exit.guard != CREST).count() == label.len()
+            let listed = |exit: &&Exit| !matches!(exit.guard, CREST | REVERSAL);
+            exits.iter().filter(listed).count() == label.len()
         };
         let exits = margins.iter().map(|(margin, _)| &margin.exits).find(|exits| is_whole(exits));
         let Some(exits) = exits.cloned() else {

@@ -10,7 +10,7 @@
 //! end would take as many steps as a run may. The normal motion does not depend on the tangential
 //! one and is the same at all points of a plane, so its end is known beforehand.
 
-use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, STATE};
+use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, REVERSAL, STATE};
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::margin::{Exit, Followed, Margin, Margins, Place, follow, margin, margins};
@@ -183,7 +183,7 @@ pub fn failed() -> CollisionLabel {
 /// Whether the itinerary changes where a margin vanishes, and not only the order of events.
 pub fn is_sure(margin: &Margin) -> bool {
     match margin.place {
-        _ if margin.guard == CREST => false,
+        _ if matches!(margin.guard, CREST | REVERSAL) => false,
         Place::Minimum { .. } | Place::Maximum { .. } | Place::End | Place::Branch(_) => true,
         Place::Exit(exit) => exit.guard == END,
         Place::Start { .. } => margin.exits.is_empty(),

@@ -80,6 +80,12 @@ impl FitSettings {
         InvalidValue::check("mu", friction, above, friction > 0.0)?;
         let ok = tangential_stiffness_kg_per_s2 > 0.0 || !self.law().remembers();
         InvalidValue::check("kappa", tangential_stiffness_kg_per_s2, above, ok)?;
+        let decays = !self.law().friction.is_constant();
+        let phrase = "has a friction that decays with the velocity, which is not fitted";
+        let other = InvalidValue::phrase("the law", phrase, "one coefficient of friction");
+        if decays {
+            return Err(other);
+        }
         self.valid_free()?;
         self.valid_damping()?;
         let stages = [(true, self.free.contains(&Free::Damping).into())];

@@ -161,6 +161,11 @@ impl Table {
         let TableWindow::Velocities { pair, .. } = self.window else { return SCALED.to_owned() };
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = pair.surface;
         let mut text = if pair.law == Law::PAPER { VELOCITIES } else { OTHER_LAW }.to_owned();
+        if pair.law.damping.is_hysteretic() {
+            let (name, value) = pair.damping_constant();
+            let line = format!(" *   {name:<35}{value:?}");
+            text = text.replace(" *   damping / that                     @TIME@", &line);
+        }
         for (name, value) in [
             ("@MASS@", pair.effective_mass_kg),
             ("@ELASTIC@", pair.elastic_constant),

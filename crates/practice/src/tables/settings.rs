@@ -68,6 +68,14 @@ impl TableWindow {
         }
     }
 
+    /// The law of the window's collisions.
+    fn law(&self) -> Law {
+        match *self {
+            Self::Scaled { law, .. } => law,
+            Self::Velocities { pair, .. } => pair.law,
+        }
+    }
+
     /// Whether the collisions of the window are integrated.
     fn is_integrated(&self) -> bool {
         let (law, damped, tangential_damping) = match *self {
@@ -129,6 +137,11 @@ impl TableSettings {
             let expected = format!("{finest:e} to {coarsest:e}");
             return Err(InvalidValue::new("bound", self.bound, expected).into());
         }
+        if !self.window.law().friction.is_constant() {
+            let phrase = "has a friction that decays with the velocity, of which no table is made";
+            let expected = "one coefficient of friction";
+            return Err(InvalidValue::phrase("the law", phrase, expected).into());
+        }
         for (name, Range { low, high }) in self.window.names().into_iter().zip(self.window.sides())
         {
             let accepted = low > 0.0 && high > low && high.is_finite();
@@ -144,7 +157,6 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_paper(law: &Law) -> bool {
     *law == Law::PAPER
 }

@@ -158,7 +158,8 @@ impl ForceRule {
             Tangential::Mindlin => self.kappa * root,
         };
         let dashpot = self.tangential_damping * eta;
-        let tangential = self.tangential_force(state, (k, dashpot), normal.abs(), root);
+        let limit = normal.abs() * law.friction.share(state.w);
+        let tangential = self.tangential_force(state, (k, dashpot), limit, root);
         state.v -= dt * normal;
         state.w -= dt * tangential;
         let number = |k: f64, damping: f64| 0.25 * dt * (k * dt + 2.0 * damping);

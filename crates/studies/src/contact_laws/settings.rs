@@ -9,7 +9,7 @@ use crate::limits::{MOST_CELLS, MOST_LAWS};
 /// The laws of a study, and the window over which they are computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactLawSettings {
-    /// The laws; at most 24.
+    /// The laws; at most [`MOST_LAWS`].
     pub laws: Vec<Named>,
     /// Interval of the scaled stiffness κ.
     pub kappa: Range,
@@ -26,7 +26,7 @@ pub struct ContactLawSettings {
 }
 
 /// A law with the names under which particle codes have it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Named {
     /// One name or more.
     pub names: Vec<&'static str>,

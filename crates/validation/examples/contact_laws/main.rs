@@ -77,6 +77,7 @@ fn laws() -> Vec<Law> {
                             limit_damping,
                             end,
                             coulomb_test,
+                            ..Law::PAPER
                         });
                     }
                 }
@@ -89,7 +90,7 @@ fn laws() -> Vec<Law> {
                 rescaled: false,
                 limit_damping,
                 end,
-                coulomb_test: CoulombTest::Total,
+                ..Law::PAPER
             });
         }
     }
@@ -97,8 +98,17 @@ fn laws() -> Vec<Law> {
 }
 
 fn name(law: Law) -> String {
-    let Law { normal, damping, tangential, history, rescaled, limit_damping, end, coulomb_test } =
-        law;
+    let Law {
+        normal,
+        damping,
+        tangential,
+        history,
+        rescaled,
+        limit_damping,
+        end,
+        coulomb_test,
+        ..
+    } = law;
     let rescaled = if rescaled { " rescaled" } else { "" };
     let limit = if limit_damping { " limited" } else { "" };
     let test = if coulomb_test == CoulombTest::Spring { " spring tested" } else { "" };

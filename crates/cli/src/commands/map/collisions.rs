@@ -163,13 +163,13 @@ fn report(tiles: &Tiles, found: &Found) {
 /// The cells of the map, and what computes the collisions.
 fn grid(arguments: &MapArguments) -> Result<(Grid, Engine), Failure> {
     let MapArguments { size, bodies, .. } = arguments;
-    let (law, mut tangential_damping) = arguments.law.chosen()?;
+    let (mut law, mut tangential_damping) = arguments.law.chosen()?;
     let MapAxes { columns, rows, coordinates, engine } = match bodies {
         Some(file) => MapAxes::of_bodies(arguments, file, law)?,
         None => MapAxes::scaled(arguments, (law, tangential_damping))?,
     };
     if let Coordinates::Velocities { pair } = coordinates {
-        tangential_damping = pair.tangential_damping();
+        (law, tangential_damping) = (pair.law, pair.tangential_damping());
         law::permits(arguments.law.law.as_deref(), "tangential damping", tangential_damping)?;
     }
     let columns = GridAxis { range: columns, cells: size.columns };
@@ -208,7 +208,7 @@ impl MapAxes {
             return Err(Failure::Usage(message.to_owned()));
         };
         let pair = bodies::read_pair(file, law)?;
-        let law = (law, pair.tangential_damping());
+        let law = (pair.law, pair.tangential_damping());
         let engine = arguments.method.engine(law)?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
     }

@@ -115,6 +115,8 @@ pub struct SurfaceFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     friction: Option<Value>,
+    dynamic_friction: Option<Value>,
+    friction_decay_s_per_m: Option<Value>,
     normal_stiffness_kg_per_s2: Option<Value>,
     hertz_stiffness_kg_per_s2_m0_5: Option<Value>,
     tangential_stiffness_kg_per_s2: Option<Value>,
@@ -296,6 +298,8 @@ impl SurfaceFields {
         };
         let constants = Constants {
             friction,
+            dynamic_friction: given(&quantity::DYNAMIC_FRICTION, &self.dynamic_friction)?,
+            friction_decay_s_per_m: given(&quantity::FRICTION_DECAY, &self.friction_decay_s_per_m)?,
             normal_stiffness_kg_per_s2: given(
                 &quantity::NORMAL_STIFFNESS,
                 &self.normal_stiffness_kg_per_s2,

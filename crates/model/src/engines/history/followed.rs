@@ -126,8 +126,8 @@ impl Followed<{ general::STATE }> for GeneralContact {
 
     fn begins(event: &SwitchEvent<Mode, { general::STATE }>) -> Begins {
         match event.guard {
-            REVERSAL => Begins::Nothing,
-            CREST => Begins::Part,
+            REVERSAL if event.from == event.to => Begins::Nothing,
+            REVERSAL | CREST => Begins::Part,
             END if event.from.stage == event.to.stage => Begins::End,
             END if event.from.regime == event.to.regime => Begins::Part,
             _ => Begins::Phase,

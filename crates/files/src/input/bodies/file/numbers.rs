@@ -54,8 +54,10 @@ const WALL_MOTION: [Vector<WallMotionFields>; 3] = [
     ("normal", "without unit", |it| &mut it.normal),
     (VELOCITY.0, VELOCITY.1, |it| &mut it.velocity_m_per_s),
 ];
-const SURFACE: [Scalar<SurfaceFields>; 14] = [
+const SURFACE: [Scalar<SurfaceFields>; 16] = [
     (&quantity::FRICTION, |it| &mut it.friction),
+    (&quantity::DYNAMIC_FRICTION, |it| &mut it.dynamic_friction),
+    (&quantity::FRICTION_DECAY, |it| &mut it.friction_decay_s_per_m),
     (&quantity::NORMAL_STIFFNESS, |it| &mut it.normal_stiffness_kg_per_s2),
     (&quantity::HERTZ_STIFFNESS, |it| &mut it.hertz_stiffness_kg_per_s2_m0_5),
     (&quantity::TANGENTIAL_STIFFNESS, |it| &mut it.tangential_stiffness_kg_per_s2),
