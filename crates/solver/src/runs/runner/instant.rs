@@ -36,13 +36,22 @@ struct Transition<Mode> {
     to: Mode,
 }
 
+/// A guard has crossed zero in a mode, and has changed nothing.
+#[derive(Clone, Copy)]
+struct Noted<Mode> {
+    s: f64,
+    mode: Mode,
+    guard: usize,
+    crossed: Crossed,
+}
+
 /// What is known about the guards at one instant, by their places.
 pub(super) struct Instant<S: System> {
     pending: PerGuard<S, Option<Pending<S::Mode>>>,
     /// The modes in which guards have acted, and how they have crossed zero.
     acted: PerGuard<S, Option<(S::Mode, Crossed)>>,
-    /// The last events that have changed nothing: time, mode, guard, and how it has crossed zero.
-    noted: SmallVec<[(f64, S::Mode, usize, Crossed); 2]>,
+    /// The last events that have changed nothing.
+    noted: SmallVec<[Noted<S::Mode>; 2]>,
     /// The state before the first transition.
     origin: S::State,
     transitions: SmallVec<[Transition<S::Mode>; 4]>,
@@ -82,11 +91,13 @@ impl<S: System> Instant<S> {
     /// cannot be of the same instant.
     pub(super) fn note(&mut self, notes: &[Note<S>], drift: f64) {
         let Some(first) = notes.first() else { return };
-        self.noted.retain(|(s, ..)| *s >= first.s - HIDES * drift);
+        self.noted.retain(|noted| noted.s >= first.s - HIDES * drift);
         for note in notes {
             let acts = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
-            self.noted.extend((0..note.crossed.parts().len()).filter(acts).map(|guard| {
-                (note.s, note.from, guard, note.crossed[guard].unwrap_or(Crossed::AT_ONCE))
+            let guards = (0..note.crossed.parts().len()).filter(acts);
+            self.noted.extend(guards.map(|guard| {
+                let crossed = note.crossed[guard].unwrap_or(Crossed::AT_ONCE);
+                Noted { s: note.s, mode: note.from, guard, crossed }
             }));
         }
     }
@@ -139,8 +150,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
         // What has just been noted is of this instant too.
         let since = event.since.min(self.clock.s - HIDES * self.clock.drift());
-        for &(s, mode, guard, crossed) in noted.iter() {
-            if s >= since && guard < count {
+        for &Noted { mode, guard, crossed, .. } in noted.iter().filter(|noted| noted.s >= since) {
+            if guard < count {
                 acted[guard] = Some((mode, crossed));
             }
         }
