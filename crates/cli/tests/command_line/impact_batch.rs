@@ -255,7 +255,7 @@ fn headers_that_do_not_make_impacts() {
         ("spheres[0].diameter_m", "is not a number of these bodies"),
         ("sphere.radius_m", "is not a number of these bodies"),
         ("wall.material.young_modulus_pa", "is not a number of these bodies"),
-        ("Surface.Friction", "surface.friction, surface.normal_stiffness_kg_per_s2"),
+        ("Surface.Friction", "surface.friction, surface.dynamic_friction"),
         ("friction", "surface.friction"),
         ("radius_m", "spheres[0].radius_m"),
         ("velocity_m_per_s", "spheres[0].motion.velocity_m_per_s[0]"),
