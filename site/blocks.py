@@ -33,7 +33,7 @@ ELSEWHERE = ROOT / "docs" / "particle-codes.md"
 def blocks(page: Path) -> Iterator[tuple[str, str, int, str]]:
     """The note before each block of a page, its language, its line and its text."""
     text = page.read_text(encoding="utf-8")
-    for block in re.finditer(r"^(?:<!-- (.*) -->\n)?```(\w+)\n(.*?)^```$", text, re.M | re.S):
+    for block in re.finditer(r"^(?:<!-- ([^\n]*) -->\n)?```(\w+)\n(.*?)^```$", text, re.M | re.S):
         yield block[1] or "", block[2], text.count("\n", 0, block.start(2)) + 1, block[3]
 
 

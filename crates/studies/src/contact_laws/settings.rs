@@ -9,7 +9,7 @@ use crate::limits::{MOST_CELLS, MOST_LAWS};
 /// The laws of a study, and the window over which they are computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactLawSettings {
-    /// The laws; at most [`MOST_LAWS`].
+    /// The laws, at most 1000.
     pub laws: Vec<Named>,
     /// Interval of the scaled stiffness κ.
     pub kappa: Range,
