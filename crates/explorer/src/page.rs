@@ -3,6 +3,7 @@
 #[cfg(target_family = "wasm")]
 #[allow(unsafe_code, reason = "the declaration of an import, which is safe to call")]
 mod import {
+    #[link(wasm_import_module = "env")]
     unsafe extern "C" {
         /// Takes a curve of an atlas that is being traced, as `length` pairs of values of the axes.
         pub safe fn curve(points: *const [f64; 2], length: usize);
