@@ -25,7 +25,8 @@
 use stickslip_solver::method::{Step, Trial};
 use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State};
 
-pub(crate) mod equations;
+pub(crate) mod decay;
+mod equations;
 mod exponents;
 mod start;
 

@@ -1,6 +1,6 @@
 //! Contact laws of particle codes, by the codes' own keywords.
 
-use super::law::{CoulombTest, Damping, End, Friction, HistoryOf, Law, Normal, Tangential};
+use super::law::{CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential};
 
 /// A contact law that has a name.
 ///
@@ -138,19 +138,7 @@ const fn law(
     history: HistoryOf,
     rescaled: bool,
 ) -> Law {
-    let (limit_damping, end, coulomb_test) = (false, End::Overlap, CoulombTest::Total);
-    let friction = Friction::COULOMB;
-    Law {
-        normal,
-        damping,
-        tangential,
-        history,
-        rescaled,
-        limit_damping,
-        end,
-        coulomb_test,
-        friction,
-    }
+    Law { normal, damping, tangential, history, rescaled, end: End::Overlap, ..Law::PAPER }
 }
 
 /// A law whose Coulomb test leaves out the dashpot.

@@ -4,13 +4,13 @@ use std::ops::Index;
 
 use stickslip_solver::Number;
 
+use super::decay::{Decay, Jet, product};
 use super::exponents::Exponents;
 use super::{
     Beginning, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING,
     STATE, Stage, T as TIME, U, V, W,
 };
 use crate::contact::Contact;
-use crate::law::Friction;
 use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side, is_open};
 
 /// The least damping for which the component V is a³(v + u^{p−d}/a); see
@@ -73,41 +73,6 @@ pub(crate) struct Equations {
     decay: Option<Decay>,
 }
 
-/// The coefficient of friction μ(w) over μ(0): rest + excess·e^(−rate |[`W`]|).
-#[derive(Clone, Copy, Debug)]
-struct Decay {
-    rest: f64,
-    excess: f64,
-    rate: f64,
-}
-
-impl Decay {
-    /// The excess at a velocity with the sign `heading`, and the exponent's slope.
-    #[inline(always)]
-    fn excess_at<T: Number>(&self, heading: Side, w: T) -> (T, f64) {
-        let slope = -self.rate * heading.sign();
-        ((w * slope).exp() * self.excess, slope)
-    }
-
-    /// μ(w)/μ(0).
-    #[inline(always)]
-    fn share<T: Number>(&self, heading: Side, w: T) -> T {
-        self.excess_at(heading, w).0 + self.rest
-    }
-
-    /// The same with its first two derivatives, where those of [`W`] are given.
-    #[inline(always)]
-    fn jet<T: Number>(&self, heading: Side, Jet(w, dw, ddw): Jet<T>) -> Jet<T> {
-        let (excess, slope) = self.excess_at(heading, w);
-        let bend = (dw * dw * slope + ddw) * slope;
-        Jet(excess + self.rest, excess * dw * slope, excess * bend)
-    }
-}
-
-/// A quantity and its first two derivatives with respect to s.
-#[derive(Clone, Copy)]
-struct Jet<T>(T, T, T);
-
 impl Equations {
     pub fn new(contact: &Contact) -> Self {
         let exponents = Exponents::new(contact);
@@ -120,13 +85,9 @@ impl Equations {
         let scale = omega.sqrt().max(1.0);
         let tangential_damping = contact.law().tested_damping(contact.tangential_damping());
         let velocity_unit = contact.psi().min(1.0);
-        let Friction { dynamic, decay } = contact.law().friction;
-        let decays = !contact.law().friction.is_constant();
-        let rate = decay * velocity_unit;
-        let decay = decays.then_some(Decay { rest: dynamic, excess: 1.0 - dynamic, rate });
         Self {
             exponents,
-            decay,
+            decay: Decay::new(&contact.law().friction, velocity_unit),
             rebound,
             kappa,
             damping: a,
@@ -642,12 +603,6 @@ fn powers<T: Number>(u: T) -> Powers<T> {
         powers[k] = powers[k / 2] * powers[k - k / 2];
     }
     Powers(powers)
-}
-
-/// The product of two quantities, with derivatives.
-#[inline(always)]
-fn product<T: Number>(Jet(a, a1, a2): Jet<T>, Jet(b, b1, b2): Jet<T>) -> Jet<T> {
-    Jet(a * b, a1 * b + a * b1, a2 * b + a1 * b1 * 2.0 + a * b2)
 }
 
 /// d(u^k)/du.
