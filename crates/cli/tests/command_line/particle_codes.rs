@@ -98,10 +98,10 @@ fn run() -> Workspace {
         }
     }
     let page = fs::read_to_string(Path::new(ROOT).join("docs/particle-codes.md")).expect("a page");
-    let blocks = page.split("```console\n").skip(1).filter_map(|it| it.split("```").next());
-    let lines = blocks.filter(|block| block.contains("cc ")).flat_map(str::lines);
-    let commands: Vec<_> = lines.filter_map(|line| line.strip_prefix("$ ")).collect();
-    assert!(commands.len() >= 3, "{commands:?}");
+    let own = ["stickslip table ", "cc ", "./gas "];
+    let lines = page.lines().filter_map(|line| line.strip_prefix("$ "));
+    let commands: Vec<_> = lines.filter(|it| own.iter().any(|own| it.starts_with(own))).collect();
+    assert_eq!(commands.len(), 4, "{commands:?}");
     let program = Path::new(env!("CARGO_BIN_EXE_stickslip")).parent().expect("a folder");
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default());
     for command in commands {
