@@ -246,9 +246,7 @@ impl Document<BranchRecord> {
         };
         Self::new(orbits, BRANCH, name, branch)
     }
-}
 
-impl Document<BranchRecord> {
     /// The branch. Its orbits are looked at again: each is one of this system, and whether the
     /// system follows it is decided anew.
     ///
