@@ -35,19 +35,32 @@ const MOST_DECAY: f64 = 1e9;
 /// contact is one without friction, but its limit is lost below the least numbers.
 const LEAST_SHARE: f64 = 1e-200;
 
+/// The part of it from which on no contact is lost in rounding.
+const SURE_SHARE: f64 = 1e-8;
+
+/// A contact whose first phase is lost in rounding, since friction has nearly vanished at impact.
+pub(crate) fn lost(contact: &Contact) -> OutOfDomain {
+    of_share(contact, SURE_SHARE)
+}
+
+fn of_share(contact: &Contact, least: f64) -> OutOfDomain {
+    let value = contact.law().friction.share(contact.psi());
+    let quantity = "friction at impact over the static one";
+    OutOfDomain { engine: DAMPED.engine, quantity, value, least, most: 1.0 }
+}
+
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
     let friction = contact.law().friction;
     if !friction.is_constant() {
-        let share = friction.share(contact.psi());
-        for (quantity, value, (least, most)) in [
-            ("the decay of friction", friction.decay, (0.0, MOST_DECAY)),
-            ("friction at impact over the static one", share, (LEAST_SHARE, 1.0)),
-        ] {
-            if !(least..=most).contains(&value) {
-                let engine = DAMPED.engine;
-                return Err(OutOfDomain { engine, quantity, value, least, most });
-            }
+        let (engine, value, most) = (DAMPED.engine, friction.decay, MOST_DECAY);
+        if value > most {
+            let quantity = "the decay of friction";
+            return Err(OutOfDomain { engine, quantity, value, least: 0.0, most });
+        }
+        let share = of_share(contact, LEAST_SHARE);
+        if share.value < share.least {
+            return Err(share);
         }
     }
     let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();

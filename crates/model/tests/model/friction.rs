@@ -165,12 +165,14 @@ fn the_force_stays_below_its_limit() {
     }
 }
 
+const HERTZ: &str = "kratos/DEM_D_Hertz_viscous_Coulomb";
+
 /// Numbers far beyond those of surfaces run, and numbers that have no meaning are refused.
 #[test]
 fn extreme_decays_run_or_are_refused() {
     let mut rng = fastrand::Rng::with_seed(8744);
-    for name in ["gran/hooke/history", "gran/hertz/history", "kratos/DEM_D_Hertz_viscous_Coulomb"] {
-        for decay in [1e-12, 1e-3, 1e3, 1e5, 1e9] {
+    for name in ["paper", "gran/hooke/history", "gran/hertz/history", HERTZ] {
+        for decay in [1e-12, 1e-3, 3.0, 10.0, 30.0, 100.0, 1e3, 1e5, 1e9] {
             for dynamic in [0.0, 1e-6, 0.5, 1.0 - 1e-12] {
                 let friction = Friction { dynamic, decay };
                 let law = Law { friction, ..presets::find(name).unwrap().law };
@@ -181,7 +183,7 @@ fn extreme_decays_run_or_are_refused() {
                     Ok((found, _)) => {
                         assert!(found.final_velocity.abs() <= 1.2 * psi, "{found:?}");
                     }
-                    Err(CollisionError::Domain(_)) if friction.share(psi) < 1e-200 => {}
+                    Err(CollisionError::Domain(_)) if friction.share(psi) < 1e-8 => {}
                     Err(error) => panic!("{error} {contact:?}"),
                 }
             }

@@ -11,6 +11,7 @@ use stickslip_solver::{
 };
 
 use super::account::Observed;
+use crate::engines::domain;
 use crate::engines::error::CollisionError;
 
 /// Integrates one collision into `collision`, while `course` observes the run too.
@@ -41,6 +42,9 @@ pub fn collide<O: Observer<Mode, STATE>>(
     let run = match run {
         Err(RunError::Cycle { .. }) if tests_spring => {
             return Err(CollisionError::Creeping { time: observed.account.elapsed });
+        }
+        Err(RunError::GuardIdenticallyZero { .. }) if !contact.law().friction.is_constant() => {
+            return Err(domain::lost(&contact).into());
         }
         run => run?,
     };
