@@ -43,6 +43,8 @@ export class Hand {
   private readonly unpacked: ((part: Uint8Array) => void)[] = [];
   /** How often it was started again. */
   restarts = 0;
+  /** What is done when no task is left. */
+  idle: () => void = () => {};
 
   constructor(private readonly module: Promise<WebAssembly.Module>) {}
 
@@ -102,10 +104,15 @@ export class Hand {
   }
 
   private fail(id: number, error: string): void {
+    this.settle(id, { answer: { error } as never, ms: 0 });
+  }
+
+  private settle(id: number, result: Result<never>): void {
     const pending = this.pending.get(id);
     this.pending.delete(id);
     clearTimeout(pending?.timer);
-    pending?.resolve({ answer: { error } as never, ms: 0 });
+    pending?.resolve(result);
+    if (!this.busy) this.idle();
   }
 
   private start(): Worker {
@@ -129,9 +136,7 @@ export class Hand {
         this.die(`a worker ended (${data.dead}); it was started again`, data.id);
         return;
       }
-      this.pending.delete(data.id);
-      clearTimeout(pending?.timer);
-      pending?.resolve({ answer: data.answer, ms: data.ms });
+      this.settle(data.id, data);
     };
     worker.onerror = (event) => {
       event.preventDefault();
@@ -162,6 +167,7 @@ export class Crew {
 
   constructor(module: Promise<WebAssembly.Module>, count: number) {
     this.hands = Array.from({ length: count }, () => new Hand(module));
+    for (const hand of this.hands) hand.idle = () => void this.feed(hand);
   }
 
   /** Computes a map instead of the one before. */

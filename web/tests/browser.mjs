@@ -1,4 +1,4 @@
-// Chromium with the page, opened from the disk.
+// Chromium with the page, opened from the disk. With SLOW=4 its scripts take four times as long.
 
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
@@ -37,6 +37,10 @@ export async function launch() {
         acceptDownloads: true,
       });
       const page = await context.newPage();
+      if (process.env.SLOW) {
+        const tools = await context.newCDPSession(page);
+        await tools.send("Emulation.setCPUThrottlingRate", { rate: Number(process.env.SLOW) });
+      }
       const said = [];
       page.on("console", (message) => said.push(message.text()));
       page.on("pageerror", (error) => said.push(error.message));

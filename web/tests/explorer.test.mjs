@@ -156,7 +156,6 @@ ofPage("wheel, Shift and keys change the window, and undo goes back", "", async 
 });
 
 ofPage("arrows move between the tabs", "", async (page) => {
-  const selected = () => page.getAttribute('[role="tab"][aria-selected="true"]', "id");
   await page.focus("#tab-spheres");
   for (const [key, id] of [
     ["ArrowRight", "tab-system"],
@@ -167,7 +166,9 @@ ofPage("arrows move between the tabs", "", async (page) => {
   ]) {
     await page.keyboard.press(key);
     await page.waitForFunction((it) => document.activeElement?.id === it, id);
-    assert.equal(await selected(), id);
+    // The controls follow with the next frame.
+    await page.waitForSelector(`#${id}[aria-selected="true"]`);
+    assert.equal(await page.locator('[role="tab"][aria-selected="true"]').count(), 1);
     assert.equal(await page.locator('[role="tab"][tabindex="0"]').count(), 1);
   }
 });
@@ -523,30 +524,6 @@ ofPage("everything has a name for a screen reader, and the result is told", "", 
   assert.match(await page.getAttribute("#course", "aria-label"), /Forces from/);
 });
 
-ofPage("the first curves come soon, and a frame of dragging is short", "", async (page) => {
-  await settled(page);
-  const first = await page.evaluate(() => performance.now());
-  await mapped(page);
-  const { frame, worker } = await page.evaluate(async () => {
-    const { store, contact } = globalThis.explorer;
-    const work = [];
-    for (let step = 0; step < 60; step++) {
-      store.change({ point: [20 + step / 2, 0.5] });
-      await new Promise((resolve) => requestAnimationFrame(resolve));
-      await new Promise((resolve) => setTimeout(resolve, 15));
-      work.push(contact.times);
-    }
-    const middle = (of) => work.map(of).sort((one, other) => one - other)[30];
-    return { frame: middle((it) => it.frame), worker: middle((it) => it.worker) };
-  });
-  const { took } = await page.evaluate(() => ({ took: globalThis.explorer.plane.mapping.took }));
-  console.log(
-    `first contact after ${Math.round(first)} ms, script of a frame ${frame.toFixed(1)} ms, ` +
-      `worker ${worker.toFixed(1)} ms, map ${Math.round(took)} ms`,
-  );
-  assert.ok(first < 5000 && frame < 50);
-});
-
 ofPage("only what changes is drawn while a point is dragged", "", async (page) => {
   await mapped(page);
   await traced(page);
@@ -557,14 +534,18 @@ ofPage("only what changes is drawn while a point is dragged", "", async (page) =
       drawn[this.canvas.id] = (drawn[this.canvas.id] ?? 0) + 1;
       return clearRect.apply(this, box);
     };
+    const { store, contact } = globalThis.explorer;
+    const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
     for (let step = 0; step < 10; step++) {
-      globalThis.explorer.store.change({ point: [20 + step / 2, 0.5] });
-      await new Promise((resolve) => setTimeout(resolve, 50));
+      const kappa = 20 + step / 2;
+      store.change({ point: [kappa, 0.5] });
+      while (contact.contact.document.parameters.kappa !== kappa) await frame();
+      await frame();
     }
     return drawn;
   });
   assert.equal(drawn.map, undefined, JSON.stringify(drawn));
-  assert.ok(drawn.course >= 5 && drawn.course <= 11, JSON.stringify(drawn));
+  assert.ok(drawn.course >= 9 && drawn.course <= 11, JSON.stringify(drawn));
   const moved = await page.locator("#point").boundingBox();
   const plane = await page.locator("#plane").boundingBox();
   assert.ok(moved.x > plane.x + 200 && moved.x < plane.x + plane.width, JSON.stringify(moved));
