@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stickslip::tracer::{Curve, Node, Point, Subdivision, Vertex, VertexKind, Window};
+use stickslip::tracer::{Curve, Node, Point, Vertex, VertexKind, Window, regions::Subdivision};
 
 const WINDOW: Window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
 

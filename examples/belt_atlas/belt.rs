@@ -2,7 +2,7 @@
 //! itself.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
-use stickslip::tracer::{Point, Problem, Window};
+use stickslip::tracer::{Point, Window, hybrid::Problem};
 
 /// The velocity of the belt.
 pub const BELT: f64 = 0.3;

@@ -33,8 +33,10 @@ use std::error::Error;
 use stickslip::solver::margin::{Margin, Place};
 use stickslip::solver::{Dop853, Options};
 use stickslip::tracer::{
-    Cubic, Curve, HybridFamily, Itinerary, Location, Point, Problem, Subdivision, TraceOptions,
-    VerifyOptions, trace, verify,
+    Cubic, Curve, Point, TraceOptions,
+    hybrid::{HybridFamily, Itinerary, Problem},
+    regions::{Location, Subdivision, VerifyOptions, verify},
+    trace,
 };
 
 use belt::{BELT, Belt, Belts, OBSERVED, POSITION, WINDOW};

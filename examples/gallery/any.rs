@@ -1,7 +1,10 @@
 //! Any family of runs as one type, so that the tracer is compiled once for all of them.
 
 use stickslip::solver::margin::Margin;
-use stickslip::tracer::{Family, FamilyError, FreeRun, Itinerary, Point};
+use stickslip::tracer::{
+    Family, FreeRun, Point,
+    hybrid::{FamilyError, Itinerary},
+};
 
 /// A family of runs of a hybrid system.
 pub type Runs<'a> = dyn Family<Label = Itinerary, Margin = Margin, Error = FamilyError> + Sync + 'a;

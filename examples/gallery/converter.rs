@@ -2,7 +2,7 @@
 //! when the current reaches its reference. Then the diode conducts until the current vanishes.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
-use stickslip::tracer::{Itinerary, Point, Window};
+use stickslip::tracer::{Point, Window, hybrid::Itinerary};
 
 /// Supply and reference.
 pub const WINDOW: Window = Window { low: Point::new(0.5, 0.5), high: Point::new(1.5, 2.0) };

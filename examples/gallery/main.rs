@@ -34,8 +34,9 @@ use stickslip::plane::progress::InParallel;
 use stickslip::solver::margin::{Margin, Place};
 use stickslip::solver::{Dop853, Options};
 use stickslip::tracer::{
-    Atlas, AtlasOptions, Family, FamilyError, HybridFamily, Itinerary, Point, Problem, Surveyor,
-    TraceOptions, VerifyOptions, Watch, Window,
+    Atlas, AtlasOptions, Family, Point, Surveyor, TraceOptions, Watch, Window,
+    hybrid::{FamilyError, HybridFamily, Itinerary, Problem},
+    regions::VerifyOptions,
 };
 use stickslip_expression::{System, SystemFamily};
 use stickslip_figure::pictures::family::{Captions, draw};

@@ -1,7 +1,7 @@
 //! Collisions of LAMMPS, from `lammps_laws.json`. Several packages share this file.
 
 use serde_json::Value;
-use stickslip_model::{Contact, Damping, End, HistoryOf, Law, Normal, Tangential};
+use stickslip_model::{Contact, ContactEnd, Damping, HistoryOf, Law, Normal, Tangential};
 
 /// α of a homogeneous sphere.
 const ALPHA: f64 = 2.0 / 7.0;
@@ -28,7 +28,7 @@ pub fn contact(case: &Value) -> Contact {
         },
         rescaled: tangential.contains("rescale"),
         limit_damping: scaled["limit"].as_bool().expect("yes or no"),
-        end: End::Overlap,
+        end: ContactEnd::Overlap,
         ..Law::PAPER
     };
     let psi = number("g0") * ALPHA / number("mu");

@@ -5,7 +5,9 @@
 //! bisection. Nothing is shared with the solver or the model but the parameters. Several packages
 //! share this file.
 
-use crate::model::{Collision, Contact, CoulombTest, Damping, End, HistoryOf, Normal, Tangential};
+use crate::model::{
+    Collision, Contact, ContactEnd, CoulombTest, Damping, HistoryOf, Normal, Tangential,
+};
 
 /// Longest step in units of 1/(1 + √κ).
 const STEP: f64 = 5e-3;
@@ -88,7 +90,7 @@ pub fn collide(contact: Contact) -> Option<Found> {
 
 impl Plain {
     fn ends_by_force(&self) -> bool {
-        self.0.law().end == End::Force && self.0.damping() > 0.0
+        self.0.law().end == ContactEnd::Force && self.0.damping() > 0.0
     }
 
     fn eta(&self, x: f64) -> f64 {

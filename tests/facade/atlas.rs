@@ -11,7 +11,9 @@ use stickslip::model::{Collider, exact};
 use stickslip::plane::{CollisionEvent, CollisionFamily, CollisionLabel, CollisionPlane};
 use stickslip::solver::margin::{Margin, Place};
 use stickslip::tracer::{
-    Location, Node, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
+    Node, Point, TraceOptions,
+    regions::{Location, Subdivision, VerifyOptions, verify_with},
+    tracing::Tracer,
 };
 
 type Atlas = Subdivision<CollisionLabel, Margin>;

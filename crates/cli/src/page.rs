@@ -12,7 +12,7 @@ use stickslip_figure::pictures::studies::Picture;
 use stickslip_plane::Range;
 use stickslip_reproduction::figures::{Section, boundaries, figure2, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
-use stickslip_studies::{Cell, Column, Table, contact_laws};
+use stickslip_studies::{Cell, StudyColumn, StudyTable, contact_laws};
 
 use markup::markup;
 
@@ -117,19 +117,19 @@ fn explored(section: &str) -> Option<String> {
 
 /// The tables of a section that stand on the page; an audit is shown statement by statement
 /// instead.
-fn shown(section: &Section) -> Vec<&Table> {
+fn shown(section: &Section) -> Vec<&StudyTable> {
     let tables = section.study.tables.iter().filter(|_| section.audit.is_none());
     tables.filter(|table| section.shown.contains(&table.name)).collect()
 }
 
 /// The columns of a table, each with the class of its first cell.
-fn headings(table: &Table) -> Vec<(&Column, &'static str)> {
+fn headings(table: &StudyTable) -> Vec<(&StudyColumn, &'static str)> {
     let first = table.rows.first().into_iter().flatten();
     table.columns.iter().zip(first.map(class)).collect()
 }
 
 /// The cells of a row, each with its column.
-fn labelled<'a>(row: &'a [Cell], table: &'a Table) -> Vec<(&'a Cell, &'a Column)> {
+fn labelled<'a>(row: &'a [Cell], table: &'a StudyTable) -> Vec<(&'a Cell, &'a StudyColumn)> {
     row.iter().zip(&table.columns).collect()
 }
 

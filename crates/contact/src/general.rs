@@ -11,7 +11,7 @@
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
 //! - Where friction decays with the velocity, its coefficient has a kink where the velocity
-//!   vanishes. The mode has the sign of the velocity ([`Mode::heading`]), and a reversal is an
+//!   vanishes. The mode has the sign of the velocity ([`ContactMode::heading`]), and a reversal is an
 //!   event.
 //! - For the same reason a contact may start in slip: [`Beginning`]. The ratio of both forces at
 //!   the start is known in closed form, while a guard near zero would be decided by rounding. So
@@ -31,7 +31,7 @@ mod exponents;
 mod start;
 
 use crate::contact::Contact;
-use crate::law::{End, Law};
+use crate::law::{ContactEnd, Law};
 use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step};
 use equations::Equations;
 
@@ -81,7 +81,7 @@ pub struct GeneralContact {
 
 /// A phase, and the equations that hold in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mode {
+pub struct ContactMode {
     /// Whether the tangential force has its limit.
     pub regime: Regime,
     /// The side of sliding; in stick, the side from which the spring comes.
@@ -89,7 +89,7 @@ pub struct Mode {
     /// The part of the contact.
     pub stage: Stage,
     /// How the phase began.
-    pub progress: Progress,
+    pub progress: ModeProgress,
     /// The sign of the tangential velocity, where friction decays with it; otherwise positive.
     pub heading: Side,
 }
@@ -122,7 +122,7 @@ pub enum Beginning {
 
 /// How a phase began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
+pub enum ModeProgress {
     /// Where the limit is zero: at the start of contact, or where attraction begins.
     Touched,
     /// At the start of contact with a reset history.
@@ -190,17 +190,17 @@ impl GeneralContact {
     }
 
     /// The mode in which the contact starts.
-    pub fn first(&self) -> Mode {
+    pub fn first(&self) -> ContactMode {
         let (regime, side, progress) = match self.beginning {
             Beginning::Stick if self.equations.starts_flat() => {
-                (Regime::Stick, Side::Positive, Progress::Settled)
+                (Regime::Stick, Side::Positive, ModeProgress::Settled)
             }
-            Beginning::Stick => (Regime::Stick, Side::Positive, Progress::Touched),
-            Beginning::Slip => (Regime::Slip, Side::Positive, Progress::Touched),
-            Beginning::Reset => (Regime::Stick, Side::Positive, Progress::Reset),
-            Beginning::Overturned => (Regime::Slip, Side::Negative, Progress::Touched),
+            Beginning::Stick => (Regime::Stick, Side::Positive, ModeProgress::Touched),
+            Beginning::Slip => (Regime::Slip, Side::Positive, ModeProgress::Touched),
+            Beginning::Reset => (Regime::Stick, Side::Positive, ModeProgress::Reset),
+            Beginning::Overturned => (Regime::Slip, Side::Negative, ModeProgress::Touched),
         };
-        Mode { regime, side, stage: Stage::Main, progress, heading: Side::Positive }
+        ContactMode { regime, side, stage: Stage::Main, progress, heading: Side::Positive }
     }
 
     /// The state at the start of contact, or soon after it.
@@ -236,16 +236,16 @@ impl GeneralContact {
     }
 
     /// Overlap x.
-    pub fn overlap(&self, mode: Mode, y: &State<STATE>) -> f64 {
+    pub fn overlap(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         self.compression(y) + self.equations.left_over(mode.stage)
     }
 
     /// How long the overlap goes on after the force has ended in the state `y`: where the force is
     /// limited, nothing pushes any more.
-    pub fn flight(&self, mode: Mode, y: &State<STATE>) -> f64 {
+    pub fn flight(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         match self.contact.law().end {
-            End::Overlap => self.overlap(mode, y) / -self.compression_rate(y),
-            End::Force => 0.0,
+            ContactEnd::Overlap => self.overlap(mode, y) / -self.compression_rate(y),
+            ContactEnd::Force => 0.0,
         }
     }
 
@@ -261,12 +261,12 @@ impl GeneralContact {
     }
 
     /// Scaled normal force F.
-    pub fn normal_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
+    pub fn normal_force(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         self.equations.normal_force(mode.stage, array(y))
     }
 
     /// The tangential force Q against the motion, in units of μ times the scaled normal force.
-    pub fn tangential_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
+    pub fn tangential_force(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         match mode.regime {
             Regime::Slip => {
                 let limit = mode.stage.sign() * self.normal_force(mode, y);
@@ -278,77 +278,80 @@ impl GeneralContact {
 
     /// The tangential force over κ: the elongation of a spring of this stiffness. With κ = 0 the
     /// force itself.
-    pub fn spring(&self, mode: Mode, y: &State<STATE>) -> f64 {
+    pub fn spring(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         self.tangential_force(mode, y) / self.contact.force_unit()
     }
 
     /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
     /// at F = 0, its limit falls below every spring before, but the slip that follows may be
     /// shorter than rounding.
-    pub fn lacks_slip(&self, mode: Mode) -> bool {
-        let vanishes = self.equations.exponents.damped && self.contact.law().end == End::Force;
+    pub fn lacks_slip(&self, mode: ContactMode) -> bool {
+        let vanishes =
+            self.equations.exponents.damped && self.contact.law().end == ContactEnd::Force;
         vanishes && mode.regime == Regime::Stick && !self.equations.is_frictionless()
     }
 
     /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how
     /// long that slip lasts; `None` if none [is](Self::lacks_slip).
-    pub fn last_slip(&self, mode: Mode, y: &State<STATE>) -> Option<(usize, f64)> {
+    pub fn last_slip(&self, mode: ContactMode, y: &State<STATE>) -> Option<(usize, f64)> {
         self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))
     }
 
     /// Whether an attracting tail follows where the normal force vanishes.
     fn attracts(&self) -> bool {
         let Law { limit_damping, end, .. } = self.contact.law();
-        self.equations.exponents.damped && end == End::Overlap && !limit_damping
+        self.equations.exponents.damped && end == ContactEnd::Overlap && !limit_damping
     }
 
     /// The mode that follows `mode` where `guard` fires. Where attraction begins, slip goes on if
     /// it `slips`.
-    pub fn after(&self, mode: Mode, guard: usize, slips: bool) -> Mode {
+    pub fn after(&self, mode: ContactMode, guard: usize, slips: bool) -> ContactMode {
         let (regime, side, progress) = match (guard, mode.regime) {
             (REVERSAL, _) => {
                 let heading = mode.heading.opposite();
-                return Mode { heading, progress: Progress::Settled, ..mode };
+                return ContactMode { heading, progress: ModeProgress::Settled, ..mode };
             }
             (CREST, _) => {
-                let progress = Progress::Settled;
-                return Mode { stage: Stage::Unloading, progress, ..mode };
+                let progress = ModeProgress::Settled;
+                return ContactMode { stage: Stage::Unloading, progress, ..mode };
             }
             (END, _) => {
                 let (regime, progress) = if slips && !self.equations.exponents.remembers {
-                    (Regime::Slip, Progress::Settled)
+                    (Regime::Slip, ModeProgress::Settled)
                 } else if slips {
-                    (Regime::Slip, Progress::Switched)
+                    (Regime::Slip, ModeProgress::Switched)
                 } else {
-                    (Regime::Stick, Progress::Touched)
+                    (Regime::Stick, ModeProgress::Touched)
                 };
-                return Mode { regime, progress, stage: Stage::Tail, ..mode };
+                return ContactMode { regime, progress, stage: Stage::Tail, ..mode };
             }
-            (OTHER_SIDE, Regime::Stick) => (Regime::Slip, mode.side.opposite(), Progress::Switched),
-            (_, Regime::Stick) => (Regime::Slip, mode.side, Progress::Switched),
-            (_, Regime::Slip) => (Regime::Stick, mode.side, Progress::Switched),
+            (OTHER_SIDE, Regime::Stick) => {
+                (Regime::Slip, mode.side.opposite(), ModeProgress::Switched)
+            }
+            (_, Regime::Stick) => (Regime::Slip, mode.side, ModeProgress::Switched),
+            (_, Regime::Slip) => (Regime::Stick, mode.side, ModeProgress::Switched),
         };
-        Mode { regime, side, progress, ..mode }
+        ContactMode { regime, side, progress, ..mode }
     }
 
     /// How much faster than the limit the spring leaves it where attraction begins in a slip phase.
-    fn excess_in_tail(&self, mode: Mode, y: &State<STATE>) -> f64 {
+    fn excess_in_tail(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         let tail = self.after(mode, END, true);
         self.equations.guards(tail, array(y))[SAME_SIDE]
     }
 }
 
 impl ReadableSystem<STATE, GUARDS> for GeneralContact {
-    type Mode = Mode;
+    type Mode = ContactMode;
 
     #[inline(always)]
-    fn field<T: Number>(&self, mode: Mode, _s: T, y: &[T; STATE]) -> [T; STATE] {
+    fn field<T: Number>(&self, mode: ContactMode, _s: T, y: &[T; STATE]) -> [T; STATE] {
         self.equations.field(mode, y)
     }
 
     /// Each right-hand side has a step that is compiled for it and knows which components are
     /// constant.
-    fn step<M: Method>(&self, mode: Mode, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
+    fn step<M: Method>(&self, mode: ContactMode, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         macro_rules! take {
             ($part:ident; $($still:ident)*) => {{
                 let slope = &mut trial.slope.clone_owned();
@@ -360,17 +363,17 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         }
         match (mode.regime, mode.progress) {
             (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE DASHPOT),
-            (Regime::Stick, Progress::Settled) => take!(stick; GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Stick, ModeProgress::Settled) => take!(stick; GAP RATE FAR_GAP FAR_RATE),
             (Regime::Stick, _) => take!(first_stick;),
         }
     }
 
     #[inline(always)]
-    fn guards(&self, mode: Mode) -> [Guard; GUARDS] {
+    fn guards(&self, mode: ContactMode) -> [Guard; GUARDS] {
         let e = self.equations.exponents;
         let of = e.of(mode.stage);
         let below = Guard::new(Direction::Below).smooth();
-        let touched = matches!(mode.progress, Progress::Touched | Progress::Reset);
+        let touched = matches!(mode.progress, ModeProgress::Touched | ModeProgress::Reset);
         // A phase that starts from a zero may be much shorter than a step.
         let leave = if touched { Guard::new(Direction::Below) } else { below };
         let end =
@@ -382,19 +385,23 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let end = if starts { end.from_zero(1) } else { end };
         let [same, other] = match (mode.regime, mode.progress) {
             _ if self.equations.is_frictionless() => [Guard::OFF; 2],
-            (Regime::Slip, Progress::Switched) if !e.remembers => [below.from_zero(1), Guard::OFF],
+            (Regime::Slip, ModeProgress::Switched) if !e.remembers => {
+                [below.from_zero(1), Guard::OFF]
+            }
             (Regime::Slip, _) => [leave, Guard::OFF],
-            (_, Progress::Touched) => {
+            (_, ModeProgress::Touched) => {
                 let (limit, force) = self.equations.first_orders();
                 let order = if mode.stage == Stage::Tail { 1 } else { limit.min(force).into() };
                 [leave.from_zero(order); 2]
             }
-            (_, Progress::Reset) => [
+            (_, ModeProgress::Reset) => [
                 leave.from_zero(u32::from(of.leading - of.shared)),
                 leave.from_zero(u32::from(e.d - of.shared)),
             ],
-            (_, Progress::Switched) => [below.from_zero(if e.remembers { 2 } else { 1 }), below],
-            (_, Progress::Settled) => [below, below],
+            (_, ModeProgress::Switched) => {
+                [below.from_zero(if e.remembers { 2 } else { 1 }), below]
+            }
+            (_, ModeProgress::Settled) => [below, below],
         };
         let turns = (e.rescaled || e.hysteretic) && mode.stage == Stage::Main;
         let crest = if turns { below } else { Guard::OFF };
@@ -409,29 +416,29 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
     }
 
     #[inline(always)]
-    fn guard_values<T: Number>(&self, mode: Mode, _s: T, y: &[T; STATE]) -> [T; GUARDS] {
+    fn guard_values<T: Number>(&self, mode: ContactMode, _s: T, y: &[T; STATE]) -> [T; GUARDS] {
         self.equations.guards(mode, y)
     }
 
-    fn longest_first_step(&self, mode: Mode, s: f64, y: &State<STATE>) -> f64 {
+    fn longest_first_step(&self, mode: ContactMode, s: f64, y: &State<STATE>) -> f64 {
         let end = self.guard_values(mode, s, array(y))[END];
         longest_first_step(end, self.guard_rates(mode, s, y)[END])
     }
 
     #[inline(always)]
-    fn settle(&self, mode: Mode, y: &State<STATE>) -> Mode {
+    fn settle(&self, mode: ContactMode, y: &State<STATE>) -> ContactMode {
         let opens = mode.regime == Regime::Slip
-            || mode.progress != Progress::Settled && self.equations.is_open(mode, array(y));
-        if opens { Mode { progress: Progress::Settled, ..mode } } else { mode }
+            || mode.progress != ModeProgress::Settled && self.equations.is_open(mode, array(y));
+        if opens { ContactMode { progress: ModeProgress::Settled, ..mode } } else { mode }
     }
 
     fn transition(
         &self,
-        mode: Mode,
+        mode: ContactMode,
         guard: usize,
         _s: f64,
         y: &State<STATE>,
-    ) -> (Mode, State<STATE>) {
+    ) -> (ContactMode, State<STATE>) {
         if guard == REVERSAL {
             if !self.equations.decays() {
                 return (mode, *y);
@@ -445,8 +452,9 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         if guard == CREST {
             let turned = self.equations.turn(array(y));
             // A contact that begins to stick here would lose the gap to its limit in rounding.
-            if mode.progress == Progress::Switched && self.equations.is_at_limit(mode, array(y)) {
-                let next = Mode { progress: Progress::Switched, ..next };
+            if mode.progress == ModeProgress::Switched && self.equations.is_at_limit(mode, array(y))
+            {
+                let next = ContactMode { progress: ModeProgress::Switched, ..next };
                 return (next, self.equations.at_limit(next, turned).into());
             }
             return (next, turned.into());
@@ -454,7 +462,13 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         (next, self.equations.enter(next, array(y)).into())
     }
 
-    fn transition_condition(&self, mode: Mode, guard: usize, _s: f64, y: &State<STATE>) -> f64 {
+    fn transition_condition(
+        &self,
+        mode: ContactMode,
+        guard: usize,
+        _s: f64,
+        y: &State<STATE>,
+    ) -> f64 {
         let branches = guard == END && mode.regime == Regime::Slip && self.attracts();
         if branches { self.excess_in_tail(mode, y) } else { f64::NAN }
     }

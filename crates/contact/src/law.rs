@@ -44,10 +44,10 @@ pub struct Law {
     /// Whether the history shrinks with √x while the overlap falls.
     pub rescaled: bool,
     /// Whether the normal force is kept from attracting. Without effect where `end` is
-    /// [`End::Force`].
+    /// [`ContactEnd::Force`].
     pub limit_damping: bool,
     /// Where the contact ends.
-    pub end: End,
+    pub end: ContactEnd,
     /// What Coulomb's limit holds for.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "CoulombTest::is_usual"))]
     pub coulomb_test: CoulombTest,
@@ -203,7 +203,7 @@ impl Friction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-pub enum End {
+pub enum ContactEnd {
     /// Where the normal force would begin to attract.
     Force,
     /// Where the overlap vanishes.
@@ -259,7 +259,7 @@ impl Law {
         history: HistoryOf::Displacement,
         rescaled: false,
         limit_damping: false,
-        end: End::Force,
+        end: ContactEnd::Force,
         coulomb_test: CoulombTest::Total,
         friction: Friction::COULOMB,
     };
@@ -277,7 +277,7 @@ impl Law {
             Damping::Tsuji => "a x^(1/4)",
         };
         let damped = self.damping.is_viscous();
-        let normal = match (damped, self.limit_damping && self.end == End::Overlap) {
+        let normal = match (damped, self.limit_damping && self.end == ContactEnd::Overlap) {
             _ if self.damping.is_hysteretic() => {
                 let falling = match self.normal {
                     Normal::Linear => "(1 + a)(x − x₀)",
@@ -314,8 +314,8 @@ impl Law {
             String::new()
         };
         let end = match self.end {
-            End::Force => "F = 0",
-            End::Overlap => "x = 0",
+            ContactEnd::Force => "F = 0",
+            ContactEnd::Overlap => "x = 0",
         };
         let limit = if self.friction.is_constant() {
             "|F|".to_owned()
@@ -369,7 +369,7 @@ impl Law {
             && self.friction.is_constant();
         let damped = self.damping == Damping::Viscoelastic
             && tangential_damping == 0.0
-            && self.end == End::Force;
+            && self.end == ContactEnd::Force;
         elastic && (damping == 0.0 || damped)
     }
 
@@ -382,7 +382,7 @@ impl Law {
     /// the last trajectory to escape arrives along v = −a x. No other law has a trajectory that
     /// arrives.
     pub fn endless_from(&self) -> f64 {
-        if self.limit_damping || self.end == End::Force {
+        if self.limit_damping || self.end == ContactEnd::Force {
             return f64::INFINITY;
         }
         match (self.normal, self.damping) {

@@ -28,7 +28,7 @@ mod serialize;
 
 pub use contact::{Contact, OtherLaw};
 pub use law::{
-    CoulombTest, Damping, End, Friction, HistoryOf, Law, Normal, SpringEnergy, Tangential,
+    ContactEnd, CoulombTest, Damping, Friction, HistoryOf, Law, Normal, SpringEnergy, Tangential,
 };
 pub use phase::{Regime, Side};
 pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};

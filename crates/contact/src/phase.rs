@@ -75,12 +75,12 @@ pub struct Phase {
     /// The side of sliding; in stick, the side from which the spring comes.
     pub side: Side,
     /// How far it is from its start.
-    pub progress: Progress,
+    pub progress: PhaseProgress,
 }
 
 /// How far a phase is from its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
+pub enum PhaseProgress {
     /// The contact has just begun.
     Touched,
     /// A switch has just happened.
@@ -96,7 +96,7 @@ impl Phase {
     /// slip. With damping the limit grows as a √t, and the first phase is stick.
     pub fn first(contact: &Contact) -> Self {
         let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
-        Self { regime, side: Side::Positive, progress: Progress::Touched }
+        Self { regime, side: Side::Positive, progress: PhaseProgress::Touched }
     }
 
     /// The phase that follows: the other regime, and the other side if the spring has reached its
@@ -107,7 +107,7 @@ impl Phase {
             Regime::Stick => Regime::Slip,
         };
         let side = if on_other_side { self.side.opposite() } else { self.side };
-        Self { regime, side, progress: Progress::Switched }
+        Self { regime, side, progress: PhaseProgress::Switched }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Contact laws of particle codes, by the codes' own keywords.
 
-use super::law::{CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential};
+use super::law::{ContactEnd, CoulombTest, Damping, HistoryOf, Law, Normal, Tangential};
 
 /// A contact law that has a name.
 ///
@@ -138,7 +138,7 @@ const fn law(
     history: HistoryOf,
     rescaled: bool,
 ) -> Law {
-    Law { normal, damping, tangential, history, rescaled, end: End::Overlap, ..Law::PAPER }
+    Law { normal, damping, tangential, history, rescaled, end: ContactEnd::Overlap, ..Law::PAPER }
 }
 
 /// A law whose Coulomb test leaves out the dashpot.

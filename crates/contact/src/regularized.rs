@@ -10,7 +10,7 @@
 //! ```
 //!
 //! At the start of a stick phase the spring is at its limit and moves as fast as the limit does:
-//! gap = F − s κ y has a double zero there. Until it is [open](crate::phase::Progress::Settled) the
+//! gap = F − s κ y has a double zero there. Until it is [open](crate::phase::PhaseProgress::Settled) the
 //! gap is therefore a component of its own that starts with gap = 0 and rate = gap' = 0:
 //!
 //! ```text
@@ -37,7 +37,7 @@ pub mod derivatives;
 pub mod equations;
 
 use crate::contact::Contact;
-pub use crate::phase::{END, GUARDS, OTHER_SIDE, Phase, Progress, SAME_SIDE};
+pub use crate::phase::{END, GUARDS, OTHER_SIDE, Phase, PhaseProgress, SAME_SIDE};
 use crate::phase::{Regime, Side, longest_first_step};
 use components::array;
 pub use components::{DAMPING, GAP, RATE, SPRING, STATE, T, U, V, W};
@@ -137,7 +137,7 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
     /// constant. Those cost nothing, and a quadrature costs no stage.
     fn step<M: Method>(&self, phase: Phase, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         let side = phase.side;
-        let settled = phase.progress == Progress::Settled;
+        let settled = phase.progress == PhaseProgress::Settled;
         macro_rules! take {
             ($part:ident $damped:literal ($($side:ident)?); $($still:ident)*) => {{
                 let slope = &mut trial.slope.clone_owned();
@@ -171,12 +171,14 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
         let leave = Guard::new(Direction::Below).smooth();
         match (phase.regime, phase.progress) {
             // Without damping the contact starts at u = 0.
-            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave, Guard::OFF],
+            (Regime::Slip, PhaseProgress::Touched) => [end.from_zero(1), leave, Guard::OFF],
             (Regime::Slip, _) => [end, leave, Guard::OFF],
             // With damping both limits and the spring start from 0.
-            (Regime::Stick, Progress::Touched) => [end, leave.from_zero(1), leave.from_zero(1)],
-            (Regime::Stick, Progress::Switched) => [end, leave.from_zero(2), leave],
-            (Regime::Stick, Progress::Settled) => [end, leave, leave],
+            (Regime::Stick, PhaseProgress::Touched) => {
+                [end, leave.from_zero(1), leave.from_zero(1)]
+            }
+            (Regime::Stick, PhaseProgress::Switched) => [end, leave.from_zero(2), leave],
+            (Regime::Stick, PhaseProgress::Settled) => [end, leave, leave],
         }
     }
 
@@ -220,7 +222,7 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
                 let stretch = phase.side.sign() * spring_force * spring_rate * y[W];
                 let (force, pull) =
                     if a > 0.0 { (force.first, u * stretch) } else { (3.0 * u * v, stretch) };
-                let gap = if phase.progress == Progress::Settled {
+                let gap = if phase.progress == PhaseProgress::Settled {
                     force - pull
                 } else {
                     scale * y[RATE] / shared
@@ -237,11 +239,11 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
 
     #[inline(always)]
     fn settle(&self, phase: Phase, y: &State<STATE>) -> Phase {
-        if phase.regime == Regime::Slip || phase.progress == Progress::Settled {
+        if phase.regime == Regime::Slip || phase.progress == PhaseProgress::Settled {
             return phase;
         }
         if self.equations.is_open(array(y)) {
-            Phase { progress: Progress::Settled, ..phase }
+            Phase { progress: PhaseProgress::Settled, ..phase }
         } else {
             phase
         }

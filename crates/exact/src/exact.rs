@@ -54,7 +54,7 @@ pub use course::{NormalState, normal_state};
 pub use cusp::{cusps, swallowtail};
 pub use distance::distance;
 pub use error::ExactError;
-pub use margin::{Margins, margin, margins, moved};
+pub use margin::{ContactMargins, margin, margins, moved};
 pub use normal::undamped::CONTACT_TIME;
 
 /// Most switches that [`collide`] lists for one collision; they take about 170 MB.

@@ -5,8 +5,10 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
-    Atlas, AtlasOptions, Effort, Names, Point, RunNames, Serial, Side, SpecialPoint, Stretch,
-    Surveyor, TraceOptions, VerifyOptions, Watch, Window,
+    Atlas, AtlasOptions, Effort, Names, Point, RunNames, Serial, Surveyor, TraceOptions, Watch,
+    Window,
+    regions::{CurveSide, OutlinePart, VerifyOptions},
+    tracing::SpecialPoint,
 };
 
 use crate::axis::Axis;
@@ -122,9 +124,11 @@ fn document<Label: Clone + Ord + std::fmt::Debug>(
         let point = place(&plane.vertices()[vertex].point);
         json!({ "name": special_name(special), "point": point })
     });
-    let stretch = |stretch: &Stretch| match stretch {
-        Stretch::Curve(curve, side) => json!({ "curve": curve, "back": *side == Side::Right }),
-        Stretch::Window(ends) => json!({ "line": ends.each_ref().map(&place) }),
+    let stretch = |stretch: &OutlinePart| match stretch {
+        OutlinePart::Curve(curve, side) => {
+            json!({ "curve": curve, "back": *side == CurveSide::Right })
+        }
+        OutlinePart::Window(ends) => json!({ "line": ends.each_ref().map(&place) }),
     };
     let regions = plane.regions().iter().enumerate().map(|(index, region)| {
         let (itinerary, count, code) = name(index);

@@ -2,7 +2,7 @@
 
 use stickslip_model::{Collision, Regime, Side};
 use stickslip_solver::Outcome;
-use stickslip_tracer::Itinerary;
+use stickslip_tracer::hybrid::Itinerary;
 
 /// A hash of 32 bits (FNV-1a), never 0.
 #[derive(Clone, Copy)]

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use stickslip_expression::{System, SystemFamily, outcome_name};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
-use stickslip_tracer::{DynamicFired, Point};
+use stickslip_tracer::{Point, hybrid::DynamicFired};
 
 use crate::axis::MapPoint;
 use crate::itinerary;

@@ -9,7 +9,7 @@
 //! choose as they are written. In a plane of parameters systems are not rewritten, since boundaries
 //! are changes of the sequence of rules.
 
-use crate::graph::{Binary, Formula, Graph, Node, Unary, Variable};
+use crate::graph::{Binary, Formula, FormulaNode, Graph, Unary, Variable};
 use crate::system::{Component, Rule, System, Trigger};
 use crate::zeros::vanishes_with;
 
@@ -121,10 +121,10 @@ fn collected(graph: &mut Graph, system: &System) -> Vec<Branch> {
     let discrete: Vec<bool> = system.components.iter().map(|it| it.discrete).collect();
     let mut branches = Vec::new();
     let needed = graph.needed(&slopes);
-    let nodes: Vec<Node> = graph.nodes().to_vec();
+    let nodes: Vec<FormulaNode> = graph.nodes().to_vec();
     for (node, _) in nodes.iter().zip(needed).filter(|(_, needed)| *needed) {
         let branch = match *node {
-            Node::Select(condition, above, below) if moves(graph, condition, &discrete) => {
+            FormulaNode::Select(condition, above, below) if moves(graph, condition, &discrete) => {
                 let opposite = graph.unary(Unary::Neg, condition);
                 let difference = graph.binary(Binary::Sub, above, below);
                 // A corner is no jump.
@@ -135,7 +135,7 @@ fn collected(graph: &mut Graph, system: &System) -> Vec<Branch> {
                 }
                 Branch::Side(condition)
             }
-            Node::Unary(Unary::Floor, inner) if moves(graph, inner, &discrete) => {
+            FormulaNode::Unary(Unary::Floor, inner) if moves(graph, inner, &discrete) => {
                 Branch::Level(inner)
             }
             _ => continue,

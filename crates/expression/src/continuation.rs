@@ -2,7 +2,7 @@
 
 use stickslip_number::Dual;
 use stickslip_solver::dynamic::DynamicSystem;
-use stickslip_solver::sliding::{SampledFilippov, Side, SlidingMode, SwitchedDynamic};
+use stickslip_solver::sliding::{SampledFilippov, SlidingMode, SurfaceSide, SwitchedDynamic};
 
 use crate::program::Program;
 use crate::resets::Resets;
@@ -76,18 +76,19 @@ impl Continuation {
     /// The sides in a mode; of one that does not slide, those behind its rule.
     fn mode(&self, mode: usize, resets: &Resets, s: f64, y: &[f64]) -> SlidingMode<bool> {
         let own = mode.checked_sub(self.first).filter(|&place| place + 1 < count(self.count));
-        let sides: Vec<Side> = if let Some(place) = own {
+        let sides: Vec<SurfaceSide> = if let Some(place) = own {
             let side = |part| match part {
-                ABOVE | ABOVE_RELEASED => Side::Above,
-                BELOW | BELOW_RELEASED => Side::Below,
-                _ => Side::Sliding,
+                ABOVE | ABOVE_RELEASED => SurfaceSide::Above,
+                BELOW | BELOW_RELEASED => SurfaceSide::Below,
+                _ => SurfaceSide::Sliding,
             };
             parts(place, self.count).map(side).collect()
         } else {
             let (mut behind, mut values) = (y.to_vec(), vec![0.0; self.count]);
             resets.apply(s, &mut behind);
             self.surfaces.run(s, &behind, &mut values);
-            let side = |&value: &f64| if value < 0.0 { Side::Below } else { Side::Above };
+            let side =
+                |&value: &f64| if value < 0.0 { SurfaceSide::Below } else { SurfaceSide::Above };
             values.iter().map(side).collect()
         };
         SlidingMode::at(false, &sides)
@@ -98,12 +99,13 @@ impl Continuation {
         if mode.refusal().is_some() || !mode.is_unique() {
             return self.undecided();
         }
-        let part = |(surface, side): (usize, &Side)| match (side, mode.is_released(surface)) {
-            (Side::Sliding, _) => SLIDING,
-            (Side::Above, false) => ABOVE,
-            (Side::Above, true) => ABOVE_RELEASED,
-            (Side::Below, false) => BELOW,
-            (Side::Below, true) => BELOW_RELEASED,
+        let part = |(surface, side): (usize, &SurfaceSide)| match (side, mode.is_released(surface))
+        {
+            (SurfaceSide::Sliding, _) => SLIDING,
+            (SurfaceSide::Above, false) => ABOVE,
+            (SurfaceSide::Above, true) => ABOVE_RELEASED,
+            (SurfaceSide::Below, false) => BELOW,
+            (SurfaceSide::Below, true) => BELOW_RELEASED,
         };
         self.first + place_of(mode.sides().iter().enumerate().map(part))
     }

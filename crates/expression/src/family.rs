@@ -9,8 +9,8 @@ use std::borrow::Cow;
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, InvalidValue, Options, RunError};
 use stickslip_tracer::{
-    Accumulation, DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError,
-    FreeRun, Itinerary, Point, Window,
+    Accumulation, Family, FreeRun, Point, Window,
+    hybrid::{DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, FamilyError, Itinerary},
 };
 
 pub use align::RuleOrder;
@@ -29,7 +29,7 @@ use crate::system::System;
 /// ```
 /// use stickslip_expression::{System, SystemFamily};
 /// use stickslip_solver::Options;
-/// use stickslip_tracer::{Family, Itinerary, Point};
+/// use stickslip_tracer::{Family, Point, hybrid::Itinerary};
 ///
 /// let system = System::parse(
 ///     "parameter height = 1, e = 0.5\nstate x = height, v = 0\nx' = v\nv' = -1\n\

@@ -103,7 +103,7 @@ impl Binary {
 
 /// What a formula is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Node {
+pub enum FormulaNode {
     /// A number, by its bits.
     Constant(u64),
     /// Something that the formula reads.
@@ -120,7 +120,7 @@ pub enum Node {
     Select(Formula, Formula, Formula),
 }
 
-impl Node {
+impl FormulaNode {
     /// The formulas that a node refers to.
     #[must_use = "an iterator does nothing by itself"]
     pub fn operands(self) -> impl DoubleEndedIterator<Item = Formula> {
@@ -167,8 +167,8 @@ impl Node {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
-    nodes: Vec<Node>,
-    known: HashMap<Node, Formula>,
+    nodes: Vec<FormulaNode>,
+    known: HashMap<FormulaNode, Formula>,
 }
 
 impl Graph {
@@ -177,13 +177,13 @@ impl Graph {
     /// # Panics
     /// If the formula is of a larger graph.
     #[must_use]
-    pub fn node(&self, formula: Formula) -> Node {
+    pub fn node(&self, formula: Formula) -> FormulaNode {
         self.nodes[formula.index()]
     }
 
     /// All nodes, each after those that it refers to.
     #[must_use]
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[FormulaNode] {
         &self.nodes
     }
 
@@ -191,7 +191,7 @@ impl Graph {
     #[must_use]
     pub fn value(&self, formula: Formula) -> Option<f64> {
         match self.node(formula) {
-            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            FormulaNode::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
     }
@@ -244,7 +244,7 @@ impl Graph {
     /// If it reads a component beyond them.
     pub fn substituted(&mut self, formula: Formula, components: &[Formula]) -> Formula {
         self.rewritten(formula, &mut |_, node, _| match node {
-            Node::Variable(Variable::Component(place)) => Some(components[place as usize]),
+            FormulaNode::Variable(Variable::Component(place)) => Some(components[place as usize]),
             _ => None,
         })
     }
@@ -257,14 +257,16 @@ impl Graph {
         let node = self.unary(Unary::Abs, surface);
         let size = self.node(node);
         self.rewritten(formula, &mut |_, node, made| match node {
-            Node::Select(condition, on_or_above, _) if condition == surface && above => {
+            FormulaNode::Select(condition, on_or_above, _) if condition == surface && above => {
                 Some(made[on_or_above.index()])
             }
-            Node::Select(condition, _, below) if condition == surface => Some(made[below.index()]),
-            Node::Select(condition, _, below) if condition == negative && above => {
+            FormulaNode::Select(condition, _, below) if condition == surface => {
                 Some(made[below.index()])
             }
-            Node::Select(condition, on_or_above, _) if condition == negative => {
+            FormulaNode::Select(condition, _, below) if condition == negative && above => {
+                Some(made[below.index()])
+            }
+            FormulaNode::Select(condition, on_or_above, _) if condition == negative => {
                 Some(made[on_or_above.index()])
             }
             node if node == size => Some(magnitude),
@@ -302,7 +304,9 @@ impl Graph {
     ) -> Formula {
         let [not_old, not_new] = [old, new].map(|it| self.unary(Unary::Neg, it));
         self.rewritten(formula, &mut |graph, node, made| match node {
-            Node::Select(condition, above, below) if condition == old || condition == not_old => {
+            FormulaNode::Select(condition, above, below)
+                if condition == old || condition == not_old =>
+            {
                 let condition = if condition == old { new } else { not_new };
                 Some(graph.select(condition, made[above.index()], made[below.index()]))
             }
@@ -311,13 +315,13 @@ impl Graph {
     }
 
     /// The formula with another one in place of a node.
-    pub(crate) fn replaced(&mut self, formula: Formula, old: Node, new: Formula) -> Formula {
+    pub(crate) fn replaced(&mut self, formula: Formula, old: FormulaNode, new: Formula) -> Formula {
         self.rewritten(formula, &mut |_, node, _| (node == old).then_some(new))
     }
 
     /// The formula at a given time.
     pub(crate) fn at_time(&mut self, formula: Formula, time: Formula) -> Formula {
-        let is_time = |node| matches!(node, Node::Variable(Variable::Time));
+        let is_time = |node| matches!(node, FormulaNode::Variable(Variable::Time));
         self.rewritten(formula, &mut |_, node, _| is_time(node).then_some(time))
     }
 
@@ -326,7 +330,7 @@ impl Graph {
     fn rewritten(
         &mut self,
         formula: Formula,
-        instead: &mut impl FnMut(&mut Self, Node, &[Formula]) -> Option<Formula>,
+        instead: &mut impl FnMut(&mut Self, FormulaNode, &[Formula]) -> Option<Formula>,
     ) -> Formula {
         let needed = self.needed(&[formula]);
         let mut made: Vec<Formula> = vec![Formula(0); needed.len()];
@@ -338,19 +342,19 @@ impl Graph {
             }
             let of = |operand: Formula| made[operand.index()];
             made[index] = match node {
-                Node::Constant(bits) => self.constant(f64::from_bits(bits)),
-                Node::Variable(variable) => self.variable(variable),
-                Node::Unary(function, a) => self.unary(function, of(a)),
-                Node::Binary(function, a, b) => self.binary(function, of(a), of(b)),
-                Node::Power(a, n) => {
+                FormulaNode::Constant(bits) => self.constant(f64::from_bits(bits)),
+                FormulaNode::Variable(variable) => self.variable(variable),
+                FormulaNode::Unary(function, a) => self.unary(function, of(a)),
+                FormulaNode::Binary(function, a, b) => self.binary(function, of(a), of(b)),
+                FormulaNode::Power(a, n) => {
                     let (a, n) = (of(a), self.constant(f64::from(n)));
                     self.power(a, n)
                 }
-                Node::RealPower(a, bits) => {
+                FormulaNode::RealPower(a, bits) => {
                     let (a, exponent) = (of(a), self.constant(f64::from_bits(bits)));
                     self.power(a, exponent)
                 }
-                Node::Select(a, b, c) => self.select(of(a), of(b), of(c)),
+                FormulaNode::Select(a, b, c) => self.select(of(a), of(b), of(c)),
             };
         }
         made[formula.index()]
@@ -361,13 +365,13 @@ impl Graph {
     pub fn reads(&self, formulas: &[Formula]) -> Vec<Variable> {
         let needed = self.needed(formulas);
         let variables = self.nodes.iter().zip(needed).filter_map(|(node, needed)| match node {
-            Node::Variable(variable) if needed => Some(*variable),
+            FormulaNode::Variable(variable) if needed => Some(*variable),
             _ => None,
         });
         variables.collect()
     }
 
-    fn intern(&mut self, node: Node) -> Formula {
+    fn intern(&mut self, node: FormulaNode) -> Formula {
         // Four billion nodes would be 100 GB.
         let next = Formula(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
         let formula = *self.known.entry(node).or_insert(next);
@@ -379,12 +383,12 @@ impl Graph {
 
     /// A number.
     pub fn constant(&mut self, x: f64) -> Formula {
-        self.intern(Node::Constant(x.to_bits()))
+        self.intern(FormulaNode::Constant(x.to_bits()))
     }
 
     /// What a formula reads.
     pub fn variable(&mut self, variable: Variable) -> Formula {
-        self.intern(Node::Variable(variable))
+        self.intern(FormulaNode::Variable(variable))
     }
 
     /// The independent variable.
@@ -422,11 +426,13 @@ impl Graph {
             return self.constant(function.of(x));
         }
         match (function, self.node(a)) {
-            (Unary::Neg, Node::Unary(Unary::Neg, b)) => b,
-            (Unary::Neg, Node::Binary(Binary::Sub, b, c)) => self.binary(Binary::Sub, c, b),
-            (Unary::Abs | Unary::Square, Node::Unary(Unary::Neg, b)) => self.unary(function, b),
-            (Unary::Abs, Node::Unary(Unary::Abs | Unary::Square | Unary::Sqrt, _)) => a,
-            _ => self.intern(Node::Unary(function, a)),
+            (Unary::Neg, FormulaNode::Unary(Unary::Neg, b)) => b,
+            (Unary::Neg, FormulaNode::Binary(Binary::Sub, b, c)) => self.binary(Binary::Sub, c, b),
+            (Unary::Abs | Unary::Square, FormulaNode::Unary(Unary::Neg, b)) => {
+                self.unary(function, b)
+            }
+            (Unary::Abs, FormulaNode::Unary(Unary::Abs | Unary::Square | Unary::Sqrt, _)) => a,
+            _ => self.intern(FormulaNode::Unary(function, a)),
         }
     }
 
@@ -443,9 +449,9 @@ impl Graph {
             _ => {}
         }
         match (function, self.node(a), self.node(b)) {
-            (Add, _, Node::Unary(Unary::Neg, c)) => return self.binary(Sub, a, c),
-            (Sub, _, Node::Unary(Unary::Neg, c)) => return self.binary(Add, a, c),
-            (Add, Node::Unary(Unary::Neg, c), _) => return self.binary(Sub, b, c),
+            (Add, _, FormulaNode::Unary(Unary::Neg, c)) => return self.binary(Sub, a, c),
+            (Sub, _, FormulaNode::Unary(Unary::Neg, c)) => return self.binary(Add, a, c),
+            (Add, FormulaNode::Unary(Unary::Neg, c), _) => return self.binary(Sub, b, c),
             (Min | Max, ..) if a == b => return a,
             (Mul, ..) if a == b => return self.unary(Unary::Square, a),
             _ => {}
@@ -453,13 +459,13 @@ impl Graph {
         // Sums and products of two numbers do not depend on their order.
         let turned = matches!(function, Add | Mul) && b < a;
         let (a, b) = if turned { (b, a) } else { (a, b) };
-        self.intern(Node::Binary(function, a, b))
+        self.intern(FormulaNode::Binary(function, a, b))
     }
 
     /// The power `a`^`b`: with an integer exponent of any number, otherwise of numbers ≥ 0.
     pub fn power(&mut self, a: Formula, b: Formula) -> Formula {
         match (self.value(a), self.value(b)) {
-            (Some(x), Some(n)) => self.constant(Node::power_of(x, n)),
+            (Some(x), Some(n)) => self.constant(FormulaNode::power_of(x, n)),
             (_, Some(0.0)) => self.constant(1.0),
             (_, Some(1.0)) => a,
             (_, Some(2.0)) => self.unary(Unary::Square, a),
@@ -467,9 +473,9 @@ impl Graph {
             (_, Some(n)) if n.fract() == 0.0 && n.abs() <= f64::from(i32::MAX) => {
                 // The value is an integer in range.
                 #[expect(clippy::cast_possible_truncation)]
-                self.intern(Node::Power(a, n as i32))
+                self.intern(FormulaNode::Power(a, n as i32))
             }
-            (_, Some(n)) => self.intern(Node::RealPower(a, n.to_bits())),
+            (_, Some(n)) => self.intern(FormulaNode::RealPower(a, n.to_bits())),
             (_, None) => {
                 let logarithm = self.unary(Unary::Ln, a);
                 let product = self.binary(Binary::Mul, b, logarithm);
@@ -484,7 +490,7 @@ impl Graph {
             Some(x) if x >= 0.0 => on_or_above,
             Some(x) if x < 0.0 => below,
             _ if on_or_above == below => below,
-            _ => self.intern(Node::Select(condition, on_or_above, below)),
+            _ => self.intern(FormulaNode::Select(condition, on_or_above, below)),
         }
     }
 

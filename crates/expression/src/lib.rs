@@ -63,7 +63,7 @@ mod zeros;
 
 pub use compiled::Compiled;
 pub use family::{RuleOrder, SystemFamily};
-pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
+pub use graph::{Binary, Formula, FormulaNode, Graph, Unary, Variable};
 pub use native::{Jump, NativeSystem, ValuedSystem};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, outcome_name};

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 use stickslip_number::Number;
 
-use crate::graph::{Binary, Node, Unary};
+use crate::graph::{Binary, FormulaNode, Unary};
 
 /// What an instruction does. `a`, `b`, `c` are registers and `k` is a constant of the pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -234,7 +234,7 @@ impl Program {
                 // The constant is an integer in range.
                 #[expect(clippy::cast_possible_truncation)]
                 Op::Power => a!().powi(k!() as i32),
-                Op::RealPower => Node::power_of(a!(), k!()),
+                Op::RealPower => FormulaNode::power_of(a!(), k!()),
                 Op::Neg => -a!(),
                 Op::Abs => a!().abs(),
                 Op::Floor => a!().floor(),

@@ -3,7 +3,9 @@
 use stickslip_solver::dynamic::{
     DynamicObserver, DynamicRecorder, DynamicRun, DynamicSegment, DynamicSwitch, run_dynamic_with,
 };
-use stickslip_solver::{EmbeddedPair, Grazing, Options, Outcome, Pole, Preempted, Rest, RunError};
+use stickslip_solver::{
+    EmbeddedPair, Grazing, Options, Outcome, Pole, Rest, RunError, hybrid::Preempted,
+};
 
 use crate::run::Runnable;
 

@@ -16,7 +16,7 @@
 //! | `stickslip-contact` | [`Law`]: a contact law as data; [`presets`]: laws of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems; what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
 //! | `stickslip-exact` | [`exact`]: the solution of the paper's law; [`linear`]: the solution of linear contacts |
 //! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
-//! | [`spheres`] | SI units: [`quantity`](spheres::quantity), [`bodies`](spheres::bodies), [`scaling`](spheres::scaling) to a [`Contact`], [`encounter`](spheres::encounter) in three dimensions, its [`Outcome`](spheres::Outcome) and [`ImpactReport`](spheres::ImpactReport) |
+//! | [`spheres`] | SI units: [`quantity`](spheres::quantity), [`bodies`](spheres::bodies), [`scaling`](spheres::scaling) to a [`Contact`], [`encounter`](spheres::encounter) in three dimensions, its [`ImpactOutcome`](spheres::ImpactOutcome) and [`ImpactReport`](spheres::ImpactReport) |
 //! | [`limits`] | [`normal`](limits::normal), [`coulomb`](limits::coulomb), [`largest`](limits::largest), [`inner`](limits::inner): closed forms and limits to compare with |
 //! | | [`restitution`]: the damping with which a law has a coefficient of normal restitution |
 //! | | [`text`]: numbers in sentences and pictures |
@@ -56,7 +56,7 @@ pub use spheres::Reduction;
 pub use stickslip_contact::domain::OutOfDomain;
 #[doc(inline)]
 pub use stickslip_contact::{
-    Collision, Contact, CoulombTest, Damping, End, EnergyLedger, FEW_SWITCHES, Friction,
+    Collision, Contact, ContactEnd, CoulombTest, Damping, EnergyLedger, FEW_SWITCHES, Friction,
     GivenValue, HistoryOf, InvalidValue, Law, Normal, NotFinite, OtherLaw, Regime, Side,
     SpringEnergy, Switch, Switches, Tangential, general, presets, regularized,
 };

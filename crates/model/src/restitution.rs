@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use stickslip_contact::{Contact, Damping, End, InvalidValue, Law, Normal, presets};
+use stickslip_contact::{Contact, ContactEnd, Damping, InvalidValue, Law, Normal, presets};
 
 use crate::engines::Engine;
 use crate::engines::error::CollisionError;
@@ -39,7 +39,7 @@ pub fn critical_damping(law: Law) -> Option<f64> {
 
 /// Whether a contact lasts until x = 0 with a force that may attract.
 fn attracts(law: Law) -> bool {
-    law.end == End::Overlap && !law.limit_damping
+    law.end == ContactEnd::Overlap && !law.limit_damping
 }
 
 /// ln ε_n of a hysteretic force over ln(1 + a): the energy is divided as the overlap is.

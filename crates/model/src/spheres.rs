@@ -19,6 +19,6 @@ pub use forces::{Constants, Forces};
 pub use moment::ForceSnapshot;
 pub use nalgebra::Vector3;
 pub use observed::Observed;
-pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
+pub use outcome::{EnergyAccount, ForceSwitch, ImpactOutcome};
 pub use report::{Comparison, ImpactReport};
 pub use scaling::{BodyPair, Impact};

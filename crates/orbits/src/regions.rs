@@ -11,7 +11,9 @@ mod pieces;
 
 use stickslip_expression::InvalidValue;
 use stickslip_tracer::{
-    Atlas, AtlasOptions, Names, Network, TraceStatistics, Unresolved, VerifyOptions, Vertex, Window,
+    Atlas, AtlasOptions, Names, Vertex, Window,
+    regions::VerifyOptions,
+    tracing::{Network, TraceStatistics, Unresolved},
 };
 
 use crate::branch::{BranchOptions, SpecialKind};

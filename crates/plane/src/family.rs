@@ -7,7 +7,8 @@ use stickslip_model::{CollisionError, Contact, Engine, InvalidValue, Law, Normal
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, Options, Start};
 use stickslip_tracer::{
-    Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
+    Family, FreeRun, Point, Window,
+    hybrid::{FamilyError, HybridFamily, Itinerary, Problem},
 };
 
 pub(crate) mod gaining;
@@ -29,7 +30,7 @@ use crate::sheet::Sheet;
 ///
 /// ```
 /// use stickslip_plane::CollisionPlane;
-/// use stickslip_tracer::{Location, Subdivision, TraceOptions, trace};
+/// use stickslip_tracer::{TraceOptions, trace, regions::{Location, Subdivision}};
 ///
 /// let plane = CollisionPlane::new((5.0, 8.0), (0.8, 1.2), 0.0)?;
 /// let network = trace(&plane.family(), &plane.window(), &TraceOptions::default())?;

@@ -6,9 +6,12 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stickslip_model::InvalidValue;
-use stickslip_tracer::{AtlasOptions, Change, Stack, StackOptions, TraceError, Watch};
 #[cfg(feature = "serde")]
-use stickslip_tracer::{Effect, Meeting};
+use stickslip_tracer::stack::{Effect, StackMeeting};
+use stickslip_tracer::{
+    AtlasOptions, TraceError, Watch,
+    stack::{Change, Stack, StackOptions},
+};
 
 use crate::atlas::{self, AtlasError, CollisionAtlas, Frame, itinerary};
 use crate::family::CollisionPlane;
@@ -50,7 +53,7 @@ pub struct DampingLayer {
 /// contact begins in stick, so that all regions are others, and nothing is followed from there.
 ///
 /// Each atlas is traced as [`atlas::trace`] does it. The changes come from atlases of their own,
-/// see [`stickslip_tracer::Stack`]; `as_stacked` tells whether both agree. The atlases are computed
+/// see [`stickslip_tracer::stack::Stack`]; `as_stacked` tells whether both agree. The atlases are computed
 /// on the threads of the current rayon pool. `progress` is told about each of them.
 ///
 /// ```
@@ -225,7 +228,7 @@ impl DampingStack {
                 "as_stacked": layer.as_stacked,
             })
         };
-        let meeting = |meeting: Meeting| {
+        let meeting = |meeting: StackMeeting| {
             let [kappa, psi] = self.plane.sheet().snapped(&meeting.point);
             let kind = meeting.kind.name();
             json!({ "kind": kind, "damping": meeting.value, "kappa": kappa, "psi": psi })

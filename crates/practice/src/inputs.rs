@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential};
+use stickslip_model::{ContactEnd, CoulombTest, Damping, HistoryOf, Law, Normal, Tangential};
 
 /// A particle code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,7 +150,7 @@ impl Constants {
 
     /// Whether the normal force never attracts.
     fn limited(&self) -> bool {
-        self.law.limit_damping || self.law.end == End::Force
+        self.law.limit_damping || self.law.end == ContactEnd::Force
     }
 
     /// γ/√(m k) or γ/√(m ρ).

@@ -1,6 +1,6 @@
 //! Tables of ε_t and ε_n.
 //!
-//! A particle code can look the restitution up. [`run`] makes a [`Table`] of it over (κ, ψ) at one
+//! A particle code can look the restitution up. [`run`] makes a [`RestitutionTable`] of it over (κ, ψ) at one
 //! damping, or over the velocities (g_n, g_t) of two bodies, with errors below a bound everywhere.
 //! Pieces of polynomials follow the boundaries on which the switches of a collision change and on
 //! which ε_t has kinks or roots.
@@ -59,14 +59,14 @@ pub use header::require_prefix;
 pub use keys::Keys;
 pub use settings::{TableSettings, TableWindow};
 pub use stretch::Stretch;
-pub use table::{Arrays, NO_REGION, Table, TableVerification};
+pub use table::{Arrays, NO_REGION, RestitutionTable, TableVerification};
 
 /// Makes a table of ε_t and ε_n and verifies it, on the threads of the current rayon pool.
 ///
 /// # Errors
 /// [`TableError`]: the settings are out of range, the boundaries cannot be traced or something
 /// speaks against them, a collision cannot be computed, or the bound is not reached.
-pub fn run(settings: &TableSettings, progress: Report<'_>) -> Result<Table, TableError> {
+pub fn run(settings: &TableSettings, progress: Report<'_>) -> Result<RestitutionTable, TableError> {
     settings.validate()?;
     let plane = settings.window.plane()?;
     let division = divide(&plane, plane.sheet().tolerances().usual, SILENT)?;
@@ -85,7 +85,7 @@ pub fn run(settings: &TableSettings, progress: Report<'_>) -> Result<Table, Tabl
     };
     let regions = 0..division.regions.regions().len();
     let named = regions.map(|region| division.itinerary(region).to_owned());
-    let mut table = Table {
+    let mut table = RestitutionTable {
         window: settings.window,
         constant_eps_n,
         bound: settings.bound,

@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use pyo3::prelude::*;
 use serde_json::json;
-use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
+use stickslip_figure::pictures::branch::{
+    BranchCurve, BranchPoint, BranchStretch, SpecialMark, draw,
+};
 use stickslip_figure::pictures::family::draw_named;
 use stickslip_orbits::document::{
     BranchRecord, Document, OrbitRecord, OrbitRegions, SpecialRecord,
@@ -412,13 +414,13 @@ pub fn branch_picture(
 ) -> String {
     let points = points.into_iter().map(|(x, y, followed, stable)| {
         let stretch = match (followed, stable) {
-            (false, _) => Stretch::Virtual,
-            (true, true) => Stretch::Stable,
-            (true, false) => Stretch::Unstable,
+            (false, _) => BranchStretch::Virtual,
+            (true, true) => BranchStretch::Stable,
+            (true, false) => BranchStretch::Unstable,
         };
         BranchPoint { at: [x, y], stretch }
     });
-    let specials = specials.iter().map(|(name, x, y, behind)| SpecialPoint {
+    let specials = specials.iter().map(|(name, x, y, behind)| SpecialMark {
         name,
         at: [*x, *y],
         behind: *behind,

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use stickslip_plane::progress::Report;
 use stickslip_plane::{Range, sealed};
 use stickslip_practice::tables::{
-    self, SCHEMA, Table, TableDocument, TableError, TableSettings, TableVerification, TableWindow,
+    self, SCHEMA, TableDocument, TableError, TableSettings, TableVerification, TableWindow,
 };
 
 use crate::arrays::{Pairs, numbers};
@@ -17,7 +17,7 @@ use crate::parallel::Threads;
 
 /// ε_t and ε_n over a window, to be looked up.
 #[pyclass(frozen, module = "stickslip._native")]
-pub struct RestitutionTable(Table);
+pub struct RestitutionTable(tables::RestitutionTable);
 
 #[pymethods]
 impl RestitutionTable {
@@ -71,7 +71,9 @@ impl RestitutionTable {
             sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
             let document: TableDocument = serde_json::from_str(text)
                 .map_err(|error| format!("expected a file of schema {SCHEMA:?}: {error}"))?;
-            Table::try_from(document).map(Self).map_err(|error| error.to_string())
+            tables::RestitutionTable::try_from(document)
+                .map(Self)
+                .map_err(|error| error.to_string())
         })
         .map_err(bad_input)
     }

@@ -170,14 +170,13 @@ pub mod sensitivity;
 
 pub use error::RunError;
 pub use hybrid::{
-    Direction, Grazing, Guard, HybridSystem, ModeNumber, ModeTable, Observer, Outcome, Pole,
-    Preempted, ReadableSystem, Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times,
+    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, ReadableSystem, Rest, Run,
+    Schedule, Start, Statistics, SwitchEvent, Times,
 };
 pub use method::{Dop853, Dopri5, EmbeddedPair, Method, State};
 pub use options::{Options, StepSize};
 pub use runs::{
-    Closures, Recorder, Sample, Samples, StepTaken, Stepper, Steps, Weighted, integrate, run,
-    run_backwards, run_with,
+    Closures, Recorder, Samples, Stepper, Weighted, integrate, run, run_backwards, run_with,
 };
 pub use stickslip_number::{Enclosure, GivenValue, Interval, InvalidValue, Number};
 // What appears in signatures: states, and numbers that know their rates.

@@ -187,7 +187,7 @@ where
 
 /// A run that has followed an itinerary.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Followed<Run> {
+pub struct FollowedRun<Run> {
     /// The exits, whose hints have moved along.
     pub exits: Vec<Exit>,
     /// The run.
@@ -209,14 +209,14 @@ pub fn follow<M, S, const N: usize, const G: usize>(
     end: f64,
     options: &Options,
     exits: &[Exit],
-) -> Result<Option<Followed<Run<S::Mode, N>>>, RunError>
+) -> Result<Option<FollowedRun<Run<S::Mode, N>>>, RunError>
 where
     M: Method,
     S: HybridSystem<N, G>,
 {
     let from = (start.mode, start.s, &start.state);
     let followed = followed::<M, _>(&Fixed(system), from, end, options, exits)?;
-    Ok(followed.map(|Followed { exits, run }| Followed { exits, run: run.into() }))
+    Ok(followed.map(|FollowedRun { exits, run }| FollowedRun { exits, run: run.into() }))
 }
 
 /// As [`follow`], for a system whose dimension is known at run time.
@@ -230,20 +230,22 @@ pub fn follow_dynamic<M, S>(
     end: f64,
     options: &Options,
     exits: &[Exit],
-) -> Result<Option<Followed<DynamicRun<S::Mode>>>, RunError>
+) -> Result<Option<FollowedRun<DynamicRun<S::Mode>>>, RunError>
 where
     M: Method,
     S: DynamicSystem,
 {
     on_fixed_states!(system, start, |padded, from, n| {
         let followed = follow(method, &padded, from, end, options, exits)?;
-        Ok(followed
-            .map(|Followed { exits, run }| Followed { exits, run: DynamicRun::of_few(run, n) }))
+        Ok(followed.map(|FollowedRun { exits, run }| FollowedRun {
+            exits,
+            run: DynamicRun::of_few(run, n),
+        }))
     });
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     let from = (start.mode, start.s, &from);
     let followed = followed::<M, _>(&system, from, end, options, exits)?;
-    Ok(followed.map(|Followed { exits, run }| Followed { exits, run: run.into() }))
+    Ok(followed.map(|FollowedRun { exits, run }| FollowedRun { exits, run: run.into() }))
 }
 
 /// The value of `margin`, with its name moved along.
@@ -307,12 +309,12 @@ fn followed<M: Method, S: System>(
     end: f64,
     options: &Options,
     exits: &[Exit],
-) -> Result<Option<Followed<End<S>>>, RunError> {
+) -> Result<Option<FollowedRun<End<S>>>, RunError> {
     let found = watch::<M, S>(system, start, end, options, exits, (0, Watch::Nothing));
     Ok(found.map_err(|(error, _)| error)?.map(|(run, watched)| {
         let mut exits = exits.to_vec();
         move_along(&mut exits, start.1, &watched);
-        Followed { exits, run }
+        FollowedRun { exits, run }
     }))
 }
 

@@ -34,7 +34,7 @@ pub use runner::run;
 pub use samples::{Sample, Samples};
 pub use smooth::integrate;
 pub use steps::{StepTaken, Stepper, Steps};
-pub use trajectory::{Recorder, Segment, Trajectory};
+pub use trajectory::{Recorder, Trajectory, TrajectorySegment};
 pub use unlocated::run_over_switches;
 pub use weighted::Weighted;
 

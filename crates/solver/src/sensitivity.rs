@@ -27,7 +27,7 @@ pub use dynamic::{
 
 /// A small change of the independent variable, of the state and of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change<const N: usize> {
+pub struct Variation<const N: usize> {
     /// The change of the independent variable.
     pub s: f64,
     /// The change of the state.
@@ -40,15 +40,26 @@ pub struct Change<const N: usize> {
 ///
 /// A [`ReadableTransition`] is one by itself, by dual numbers. Otherwise each function belongs to a
 /// function of [`HybridSystem`]. It returns the change of that function, to first order, under a
-/// [`Change`] of its arguments and of a parameter.
+/// [`Variation`] of its arguments and of a parameter.
 pub trait Differentiable<const N: usize, const G: usize>: HybridSystem<N, G> {
     /// The change of the right-hand side.
-    fn field_change(&self, mode: Self::Mode, s: f64, y: &State<N>, change: &Change<N>) -> State<N>;
+    fn field_change(
+        &self,
+        mode: Self::Mode,
+        s: f64,
+        y: &State<N>,
+        change: &Variation<N>,
+    ) -> State<N>;
 
     /// The changes of the guards' values. All guards may be multiplied by the same positive
     /// function, since this does not move their zeros.
-    fn guard_changes(&self, mode: Self::Mode, s: f64, y: &State<N>, change: &Change<N>)
-    -> [f64; G];
+    fn guard_changes(
+        &self,
+        mode: Self::Mode,
+        s: f64,
+        y: &State<N>,
+        change: &Variation<N>,
+    ) -> [f64; G];
 
     /// The change of the state that follows when `guard` fires. If it is not a number, the run
     /// fails with [`RunError::State`].
@@ -58,7 +69,7 @@ pub trait Differentiable<const N: usize, const G: usize>: HybridSystem<N, G> {
         guard: usize,
         s: f64,
         y: &State<N>,
-        change: &Change<N>,
+        change: &Variation<N>,
     ) -> State<N>;
 }
 
@@ -118,12 +129,12 @@ pub trait ReadableTransition<const N: usize, const G: usize>: ReadableSystem<N, 
 const ROUNDING: f64 = 1e-9;
 
 impl<S: ReadableTransition<N, G>, const N: usize, const G: usize> Differentiable<N, G> for S {
-    fn field_change(&self, mode: S::Mode, s: f64, y: &State<N>, by: &Change<N>) -> State<N> {
+    fn field_change(&self, mode: S::Mode, s: f64, y: &State<N>, by: &Variation<N>) -> State<N> {
         let (s, y) = along(s, y, by);
         ReadableSystem::field(self, mode, s, &y).map(|slope| slope.eps).into()
     }
 
-    fn guard_changes(&self, mode: S::Mode, s: f64, y: &State<N>, by: &Change<N>) -> [f64; G] {
+    fn guard_changes(&self, mode: S::Mode, s: f64, y: &State<N>, by: &Variation<N>) -> [f64; G] {
         let (s, y) = along(s, y, by);
         ReadableSystem::guard_values(self, mode, s, &y).map(|value| value.eps)
     }
@@ -134,7 +145,7 @@ impl<S: ReadableTransition<N, G>, const N: usize, const G: usize> Differentiable
         guard: usize,
         s: f64,
         y: &State<N>,
-        by: &Change<N>,
+        by: &Variation<N>,
     ) -> State<N> {
         let (_, after) = ReadableSystem::transition(self, mode, guard, s, y);
         let (s, along) = along(s, y, by);
@@ -146,7 +157,11 @@ impl<S: ReadableTransition<N, G>, const N: usize, const G: usize> Differentiable
 }
 
 /// Time and state with their changes.
-pub(crate) fn along<const N: usize>(s: f64, y: &State<N>, by: &Change<N>) -> (Dual64, [Dual64; N]) {
+pub(crate) fn along<const N: usize>(
+    s: f64,
+    y: &State<N>,
+    by: &Variation<N>,
+) -> (Dual64, [Dual64; N]) {
     (Dual64::new(s, by.s), std::array::from_fn(|i| Dual64::new(y[i], by.y[i])))
 }
 
@@ -181,7 +196,7 @@ pub struct Sensitivities<Mode, const N: usize, const Q: usize> {
 /// Integrates `system` like [`run`](crate::run), together with derivatives of its state.
 ///
 /// The first column of `start` is the state at the place `s`. Each other column is the derivative
-/// of that state with respect to a parameter: column 1 + j belongs to [`Change::parameter`] j.
+/// of that state with respect to a parameter: column 1 + j belongs to [`Variation::parameter`] j.
 /// Error control covers all columns, so derivatives are about as accurate as the state. The
 /// derivatives hold for an unchanged itinerary. They grow without bound towards a graze. A run does
 /// not [go on](HybridSystem::rest) behind switches that accumulate.
@@ -259,11 +274,12 @@ where
     ) -> ([f64; Q], Columns<N, Q>) {
         let state = column(y, 0);
         let slope = self.system.field(mode, s, &state);
-        let change = |change: &Change<N>| self.system.guard_changes(mode, s, &state, change)[guard];
-        let rate = change(&Change { s: 1.0, y: slope, parameter: None });
+        let change =
+            |change: &Variation<N>| self.system.guard_changes(mode, s, &state, change)[guard];
+        let rate = change(&Variation { s: 1.0, y: slope, parameter: None });
         let (mut place, mut moved) = ([s; Q], *y);
         for (j, later) in place.iter_mut().enumerate().skip(1) {
-            let fixed = Change { s: 0.0, y: column(y, j), parameter: Some(j - 1) };
+            let fixed = Variation { s: 0.0, y: column(y, j), parameter: Some(j - 1) };
             *later = -change(&fixed) / rate;
             moved.set_column(j, &(fixed.y + slope * *later));
         }
@@ -290,7 +306,7 @@ where
         let state = column(y, 0);
         slope.set_column(0, &self.system.field(mode, s, &state));
         for j in 1..Q {
-            let change = Change { s: 0.0, y: column(y, j), parameter: Some(j - 1) };
+            let change = Variation { s: 0.0, y: column(y, j), parameter: Some(j - 1) };
             slope.set_column(j, &self.system.field_change(mode, s, &state, &change));
         }
     }
@@ -344,7 +360,7 @@ where
         let slope = self.system.field(next, s, &after);
         y.set_column(0, &after);
         for (j, &later) in place.iter().enumerate().skip(1) {
-            let by = Change { s: later, y: column(&moved, j), parameter: Some(j - 1) };
+            let by = Variation { s: later, y: column(&moved, j), parameter: Some(j - 1) };
             let change = self.system.transition_change(mode, guard, s, &before, &by);
             y.set_column(j, &(change - slope * later));
         }

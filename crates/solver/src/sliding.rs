@@ -94,7 +94,7 @@ mod sides;
 
 pub use readable::{Filippov, Switched};
 pub use sampled::{SampledFilippov, SwitchedDynamic, TwoFields};
-pub use sides::{Refusal, Side, SlidingMode};
+pub use sides::{Refusal, SlidingMode, SurfaceSide};
 
 use crate::hybrid::{Direction, Guard};
 use crate::sliding::control::{Row, View};
@@ -109,7 +109,7 @@ fn guards_of(surfaces: &Sides) -> [[Guard; 2]; MOST] {
     std::array::from_fn(|i| {
         let [first, second] = surfaces.zeros[i];
         let guard = |zero: u8| Guard::new(Direction::Below).from_zero(zero.into());
-        let slides = surfaces.sides[i] == Side::Sliding;
+        let slides = surfaces.sides[i] == SurfaceSide::Sliding;
         [guard(first), if slides { guard(second) } else { Guard::OFF }]
     })
 }
@@ -119,10 +119,13 @@ fn cause_of(surfaces: &Sides, guard: usize, values: impl Fn() -> Row<f64>) -> Ca
     let surface = guard / 2;
     if surface >= surfaces.count {
         Cause::Moved(values())
-    } else if surfaces.sides[surface] != Side::Sliding {
+    } else if surfaces.sides[surface] != SurfaceSide::Sliding {
         Cause::Arrived(surface)
     } else {
-        Cause::Released(surface, if guard.is_multiple_of(2) { Side::Above } else { Side::Below })
+        Cause::Released(
+            surface,
+            if guard.is_multiple_of(2) { SurfaceSide::Above } else { SurfaceSide::Below },
+        )
     }
 }
 
@@ -133,10 +136,10 @@ fn start<Mode>(
     own: Mode,
     s: f64,
     y: &[f64],
-    given: &[Option<Side>],
+    given: &[Option<SurfaceSide>],
 ) -> Result<SlidingMode<Mode>, Refusal> {
     let values = view.surfaces(s, y);
-    let sides = Sides::new(given.len(), values.map(Side::of));
+    let sides = Sides::new(given.len(), values.map(SurfaceSide::of));
     let surfaces = decide(view, &sides, Cause::Start(given), s, &mut y.to_vec());
     match surfaces.refusal {
         Some(refusal) => Err(refusal),

@@ -23,9 +23,10 @@ mod tables;
 pub use crate::limits::MOST_STIFFNESS;
 pub use collisions::{Accuracy, PairAccuracy};
 pub use measure::{
-    Approximation, Coordinates, Deviation, Errors, Spread, Switching, integrate, measure, reference,
+    Approximation, Deviation, Errors, Formulation, LocationSettings, Spread, integrate, measure,
+    reference,
 };
-pub use series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
+pub use series::{Control, ErrorRow, ErrorSeries, SeriesScheme, SwitchHandling, fitted};
 pub use tables::{ORDERS, TIMES};
 
 /// The name of the layout of the JSON, with its version.
@@ -65,8 +66,8 @@ pub fn run(
 
 /// Measures every row of every series. Each depends on itself alone.
 fn measure_all(references: &[Collision], progress: Report<'_>) -> Vec<ErrorSeries> {
-    let schemes = Scheme::all();
-    let tasks: Vec<(Scheme, f64)> = schemes
+    let schemes = SeriesScheme::all();
+    let tasks: Vec<(SeriesScheme, f64)> = schemes
         .iter()
         .flat_map(|scheme| scheme.values(references).into_iter().map(|value| (*scheme, value)))
         .collect();

@@ -37,7 +37,7 @@ pub mod three_parameters;
 pub mod unreset;
 
 pub use error::StudyError;
-pub use study::{Cell, Column, Study, Table};
+pub use study::{Cell, Study, StudyColumn, StudyTable};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

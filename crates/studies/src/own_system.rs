@@ -8,7 +8,7 @@ use stickslip_solver::dynamic::DynamicSwitch;
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError, Statistics};
 
 use crate::error::StudyError;
-use crate::study::{Cell, Column, Study, Table};
+use crate::study::{Cell, Study, StudyColumn, StudyTable};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.system-convergence/1";
@@ -223,18 +223,18 @@ impl SystemConvergence {
         findings
     }
 
-    fn tolerances(&self) -> Table {
+    fn tolerances(&self) -> StudyTable {
         let columns = vec![
-            Column::new("method", "dop853 or dopri5"),
-            Column::new("tolerance", "relative and absolute tolerance of a step"),
-            Column::new("outcome", "how the run ended, as of the command run"),
-            Column::new("events", "number of events"),
-            Column::new("same_events", "1 if the same rules act in the same order, else 0"),
-            Column::new("state_error", "largest |Δy|/(1 + |y|) of a component at the end"),
-            Column::new("time_error", "largest error of the time of an event, and of the end"),
-            Column::new("steps", "accepted steps"),
-            Column::new("rejected", "rejected steps"),
-            Column::new("right_hand_sides", "evaluations of the right-hand side"),
+            StudyColumn::new("method", "dop853 or dopri5"),
+            StudyColumn::new("tolerance", "relative and absolute tolerance of a step"),
+            StudyColumn::new("outcome", "how the run ended, as of the command run"),
+            StudyColumn::new("events", "number of events"),
+            StudyColumn::new("same_events", "1 if the same rules act in the same order, else 0"),
+            StudyColumn::new("state_error", "largest |Δy|/(1 + |y|) of a component at the end"),
+            StudyColumn::new("time_error", "largest error of the time of an event, and of the end"),
+            StudyColumn::new("steps", "accepted steps"),
+            StudyColumn::new("rejected", "rejected steps"),
+            StudyColumn::new("right_hand_sides", "evaluations of the right-hand side"),
         ];
         let row = |row: &ComparedRun| -> Vec<Cell> {
             vec![
@@ -252,15 +252,15 @@ impl SystemConvergence {
         };
         let title = "Errors and work at tolerances".to_owned();
         let rows = self.rows.iter().map(row).collect();
-        Table { name: "convergence_tolerances", title, columns, rows }
+        StudyTable { name: "convergence_tolerances", title, columns, rows }
     }
 
-    fn events(&self) -> Table {
+    fn events(&self) -> StudyTable {
         let columns = vec![
-            Column::new("event", "name of the rule"),
-            Column::new("time", "when it acts, in the reference"),
-            Column::new("mode_before", "mode before the event"),
-            Column::new("mode_after", "mode after the event"),
+            StudyColumn::new("event", "name of the rule"),
+            StudyColumn::new("time", "when it acts, in the reference"),
+            StudyColumn::new("mode_before", "mode before the event"),
+            StudyColumn::new("mode_after", "mode after the event"),
         ];
         let modes = &self.settings.system.modes;
         let row = |event: &DynamicSwitch<usize>| -> Vec<Cell> {
@@ -273,7 +273,7 @@ impl SystemConvergence {
         };
         let title = "Events of the reference".to_owned();
         let rows = self.reference.events.iter().map(row).collect();
-        Table { name: "convergence_events", title, columns, rows }
+        StudyTable { name: "convergence_events", title, columns, rows }
     }
 }
 

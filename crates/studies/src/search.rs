@@ -22,7 +22,7 @@ pub enum SearchError {
     #[error("{method} failed from {} to {}; expected {}", .ends[0], .ends[1], .method.expected())]
     Solver {
         /// The solver.
-        method: Method,
+        method: SearchMethod,
         /// The ends of the interval; of the simplex method, two corners of the triangle in the
         /// first coordinate.
         ends: [f64; 2],
@@ -31,7 +31,7 @@ pub enum SearchError {
 
 /// A solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum SearchMethod {
     /// Golden section, for a maximum in an interval.
     GoldenSection,
     /// The simplex method of Nelder and Mead, for a maximum of two variables.
@@ -42,7 +42,7 @@ pub enum Method {
     BrentZero,
 }
 
-impl Method {
+impl SearchMethod {
     /// What the solver expects, in words.
     fn expected(self) -> &'static str {
         match self {
@@ -53,7 +53,7 @@ impl Method {
     }
 }
 
-impl fmt::Display for Method {
+impl fmt::Display for SearchMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::GoldenSection => "the search by golden section",
@@ -95,7 +95,7 @@ pub fn maximum<E: From<SearchError> + Send>(
     let solver = GoldenSectionSearch::new(low, high)
         .and_then(|solver| solver.with_tolerance(1e-9 * (high - low)));
     let start = 0.5 * (low + high);
-    let solver = (Method::GoldenSection, [low, high], solver);
+    let solver = (SearchMethod::GoldenSection, [low, high], solver);
     let found =
         least(|at| value(*at).map(f64::neg), solver, |state| state.param(start).max_iters(200))?;
     Ok(if -found.value > values[best] {
@@ -119,7 +119,7 @@ pub fn maximum_near<E: From<SearchError>>(
     let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
     let depth = |at: &Vec<f64>| value([at[0], at[1]]).map(f64::neg);
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-14);
-    let solver = (Method::Simplex, [x, x + step[0]], solver);
+    let solver = (SearchMethod::Simplex, [x, x + step[0]], solver);
     let found = least(depth, solver, |state| state.max_iters(400))?;
     Ok(Optimum { at: [found.at[0], found.at[1]], value: -found.value })
 }
@@ -136,7 +136,7 @@ pub fn highest<E: From<SearchError>>(
 ) -> Result<f64, E> {
     let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
     let depth = |part: &f64| height(inside(interval, *part)).map(f64::neg);
-    let solver = (Method::BrentMaximum, interval.into(), Ok(solver));
+    let solver = (SearchMethod::BrentMaximum, interval.into(), Ok(solver));
     Ok(inside(interval, least(depth, solver, |state| state.max_iters(200))?.at))
 }
 
@@ -151,7 +151,7 @@ pub fn root<E: From<SearchError>>(
 ) -> Result<f64, E> {
     let solver = BrentRoot::new(0.0, 1.0, 1e-14);
     let height = |part: &f64| height(inside(interval, *part));
-    let solver = (Method::BrentZero, interval.into(), Ok(solver));
+    let solver = (SearchMethod::BrentZero, interval.into(), Ok(solver));
     Ok(inside(interval, least(height, solver, |state| state.max_iters(200))?.at))
 }
 
@@ -186,7 +186,7 @@ type SolverState<P> = IterState<P, (), (), (), (), f64>;
 /// the ends of what it searches.
 fn least<P, F, E, S>(
     cost: F,
-    (method, ends, solver): (Method, [f64; 2], Result<S, Error>),
+    (method, ends, solver): (SearchMethod, [f64; 2], Result<S, Error>),
     start: impl FnOnce(SolverState<P>) -> SolverState<P>,
 ) -> Result<Optimum<P>, E>
 where

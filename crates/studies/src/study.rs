@@ -21,25 +21,25 @@ pub struct Study {
     /// the other files.
     pub json: Value,
     /// The same numbers as tables.
-    pub tables: Vec<Table>,
+    pub tables: Vec<StudyTable>,
 }
 
 /// Rows of values.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct StudyTable {
     /// The stem of the name of its CSV file.
     pub name: &'static str,
     /// What the table shows.
     pub title: String,
     /// The columns.
-    pub columns: Vec<Column>,
+    pub columns: Vec<StudyColumn>,
     /// The rows, each with a value for every column.
     pub rows: Vec<Vec<Cell>>,
 }
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Column {
+pub struct StudyColumn {
     /// The name of the column in the header of a file.
     pub name: &'static str,
     /// What the column holds, with the unit.
@@ -59,7 +59,7 @@ pub enum Cell {
     Text(String),
 }
 
-impl Column {
+impl StudyColumn {
     /// A column for files.
     pub const fn new(name: &'static str, meaning: &'static str) -> Self {
         Self { name, meaning, heading: None }
@@ -117,7 +117,7 @@ impl From<&str> for Cell {
     }
 }
 
-impl Table {
+impl StudyTable {
     /// The table as JSON: an object for each row, with the names of the columns.
     pub fn json(&self) -> Value {
         let names = || self.columns.iter().map(|column| column.name.to_owned());

@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use stickslip_model::regularized::{OTHER_SIDE, Phase, Progress};
+use stickslip_model::regularized::{OTHER_SIDE, Phase, PhaseProgress};
 use stickslip_model::{CollisionError, Regime, Side, regularized};
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
@@ -48,7 +48,7 @@ impl ThreeParameters {
         let ratio = psi * self.friction;
         let size = ratio.min(1.0) * 1e-14;
         let options = Options { rtol: 1e-14, atol: size, max_step: 0.1, ..Options::default() };
-        let (regime, side, progress) = (Regime::Slip, Side::Positive, Progress::Touched);
+        let (regime, side, progress) = (Regime::Slip, Side::Positive, PhaseProgress::Touched);
         let mode = Phase { regime, side, progress };
         let start = Start { mode, s: 0.0, state: State::from([0.0, 1.0, 0.0, ratio]) };
         let end = run(Dop853, self, start, f64::INFINITY, &options, &mut ())?;
@@ -75,8 +75,12 @@ impl HybridSystem<STATE, { regularized::GUARDS }> for ThreeParameters {
         let leave = Guard::new(Direction::Below);
         let reset = self.reset;
         match (phase.regime, phase.progress) {
-            (Regime::Slip, Progress::Touched) if reset => [end.from_zero(1), leave, Guard::OFF],
-            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave.from_zero(2), Guard::OFF],
+            (Regime::Slip, PhaseProgress::Touched) if reset => {
+                [end.from_zero(1), leave, Guard::OFF]
+            }
+            (Regime::Slip, PhaseProgress::Touched) => {
+                [end.from_zero(1), leave.from_zero(2), Guard::OFF]
+            }
             (Regime::Slip, _) if reset => [end, leave, Guard::OFF],
             (Regime::Slip, _) => [end, leave.from_zero(1), Guard::OFF],
             (Regime::Stick, _) => [end, leave.from_zero(if reset { 2 } else { 1 }), leave],

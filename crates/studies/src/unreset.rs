@@ -14,7 +14,7 @@
 //! round: at κ = 18 and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are the same as in
 //! [`stickslip_model::regularized`].
 
-use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress, SAME_SIDE};
+use stickslip_model::regularized::{END, OTHER_SIDE, Phase, PhaseProgress, SAME_SIDE};
 use stickslip_model::{Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Switch};
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Observer, Options, Outcome, Start, State, SwitchEvent,
@@ -181,15 +181,15 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
         let turn = Guard::new(Direction::Either);
         match (phase.regime, phase.progress) {
             // A phase goes on after a reversal.
-            (Regime::Slip, Progress::Settled) => [end, leave, Guard::OFF, turn.from_zero(1)],
-            (Regime::Stick, Progress::Settled) => [end, leave, leave, turn.from_zero(1)],
+            (Regime::Slip, PhaseProgress::Settled) => [end, leave, Guard::OFF, turn.from_zero(1)],
+            (Regime::Stick, PhaseProgress::Settled) => [end, leave, leave, turn.from_zero(1)],
             // Without damping the contact starts at u = 0, where the spring grows as u² and the
             // force as u³.
-            (Regime::Slip, Progress::Touched) => {
+            (Regime::Slip, PhaseProgress::Touched) => {
                 [end.from_zero(1), leave.from_zero(2), Guard::OFF, turn]
             }
             (Regime::Slip, _) => [end, leave.from_zero(1), Guard::OFF, turn],
-            (Regime::Stick, Progress::Touched) => {
+            (Regime::Stick, PhaseProgress::Touched) => {
                 [end, leave.from_zero(1), leave.from_zero(1), turn]
             }
             (Regime::Stick, _) => [end, leave.from_zero(1), leave, turn],
@@ -213,7 +213,7 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
         match guard {
-            TURN => (Phase { progress: Progress::Settled, ..phase }, *y),
+            TURN => (Phase { progress: PhaseProgress::Settled, ..phase }, *y),
             _ => (phase.after(guard == OTHER_SIDE), *y),
         }
     }

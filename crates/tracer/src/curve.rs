@@ -46,7 +46,7 @@ pub struct Vertex<Margin> {
 /// The kind of a vertex.
 ///
 /// A trace distinguishes the first four kinds. For hybrid systems,
-/// [`Network::name_vertices`](crate::Network::name_vertices) distinguishes all of them.
+/// [`Network::name_vertices`](crate::tracing::Network::name_vertices) distinguishes all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

@@ -10,8 +10,8 @@
 //! - [`trace_by_margins`] does the same without following labels.
 //! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
 //!   lies.
-//! - [`verify`] compares the labels of the regions with runs at random points.
-//! - [`follow()`] follows one boundary from a place on it, and records what the caller wants to
+//! - [`verify`](fn@regions::verify) compares the labels of the regions with runs at random points.
+//! - [`follow`](fn@tracing::follow) follows one boundary from a place on it, and records what the caller wants to
 //!   know along it.
 //! - An [`Atlas`] has all of this, and knows which regions are in doubt. A [`Surveyor`] makes it,
 //!   on the threads of the caller, and looks again where runs disagree.
@@ -22,9 +22,9 @@
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
-//! use stickslip_tracer::{
-//!     HybridFamily, Itinerary, Location, Point, Subdivision, TraceOptions, Window, trace,
-//! };
+//! use stickslip_tracer::{Point, TraceOptions, Window, trace};
+//! use stickslip_tracer::hybrid::{HybridFamily, Itinerary};
+//! use stickslip_tracer::regions::{Location, Subdivision};
 //!
 //! /// A ball that keeps a fraction of its velocity at each bounce, in units in which g = 1.
 //! struct Ball {
@@ -77,6 +77,12 @@
 //! `examples/belt_atlas` of the repository traces the stick–slip of a shaken mass, with all kinds
 //! of boundaries, and compares them with closed forms.
 //!
+//! [`DynamicFamily`]: hybrid::DynamicFamily
+//! [`HybridFamily`]: hybrid::HybridFamily
+//! [`Stack`]: stack::Stack
+//! [`Subdivision`]: regions::Subdivision
+//! [`trace_by_margins`]: tracing::trace_by_margins
+//!
 //! # The source
 //!
 //! Start reading in `tracing/tracer/trace.rs`. The modules in reading order:
@@ -107,23 +113,23 @@ pub mod conditions;
 mod cubic;
 mod curve;
 #[cfg(feature = "serde")]
-mod document;
+pub mod document;
 mod doubts;
 mod draft;
 mod effort;
 mod executor;
 mod family;
-mod hybrid;
+pub mod hybrid;
 mod inverse;
 mod lengths;
 mod names;
 mod options;
 mod polyline;
-mod regions;
-mod stack;
+pub mod regions;
+pub mod stack;
 mod stopwatch;
 mod survey;
-mod tracing;
+pub mod tracing;
 mod watch;
 mod window;
 
@@ -131,45 +137,15 @@ pub use accumulation::Accumulation;
 pub use atlas::{Atlas, AtlasOf, AtlasOptions};
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
-#[cfg(feature = "serde")]
-pub use document::{Document, DocumentError, SCHEMA};
 pub use doubts::Doubts;
 pub use draft::Draft;
 pub use effort::Effort;
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
-pub use hybrid::{
-    DynamicFamily, DynamicFired, DynamicModeOf, DynamicProblem, DynamicSetting, FamilyError,
-    HybridFamily, Itinerary, ModeOf, Problem,
-};
 pub use names::{Names, RunNames, Unnamed};
 pub use options::{TraceError, TraceOptions};
-pub use regions::finding::{Euler, Finding, SubdivisionError};
-pub use regions::locate::Location;
-pub use regions::outline::Stretch;
-pub use regions::region::{Region, Side};
-pub use regions::subdivision::Subdivision;
-pub use regions::verify::report::{Checkpoint, Mismatch, Origin, Reason, Unverified, Verification};
-pub use regions::verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};
-pub use stack::change::{Change, Effect};
-pub use stack::conditions::MeetingKind;
-#[cfg(feature = "serde")]
-pub use stack::document::{LayerDocument, StackDocument};
-pub use stack::meeting::Meeting;
-pub use stack::{Layer, Stack, StackOf, StackOptions};
 pub use stickslip_solver::InvalidValue;
 pub use survey::{DraftedOf, Surveyor};
-pub use tracing::branch::Branch;
-pub use tracing::end::{End, Special, Stop};
-pub use tracing::extrema::Extremum;
-pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
-pub use tracing::margins::trace_by_margins;
-pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
-pub use tracing::runs::Runs;
-pub use tracing::seed::Seed;
-pub use tracing::special_points::SpecialPoint;
-pub use tracing::tracer::Tracer;
-pub use tracing::tracer::count::Count;
 pub use tracing::tracer::trace::trace;
 pub use watch::{Progress, Report, Watch};
 pub use window::{Point, Window};

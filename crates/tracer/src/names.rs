@@ -94,7 +94,7 @@ impl<Label: Debug, Margin> Names<Label, Margin> for Unnamed {
 /// The names in an atlas of a hybrid system.
 ///
 /// ```
-/// use stickslip_tracer::{Itinerary, Names, RunNames};
+/// use stickslip_tracer::{Names, RunNames, hybrid::Itinerary};
 ///
 /// let axes = ["height".to_owned(), "e".to_owned()];
 /// let names = RunNames { family: "ball".to_owned(), axes, guards: vec!["bounce".to_owned()] };

@@ -15,11 +15,19 @@
 
 mod abscissae;
 pub(crate) mod arrangement;
-pub mod finding;
+pub(crate) mod finding;
 mod frame;
 mod interior;
-pub mod locate;
-pub mod outline;
-pub mod region;
-pub mod subdivision;
-pub mod verify;
+pub(crate) mod locate;
+pub(crate) mod outline;
+pub(crate) mod region;
+pub(crate) mod subdivision;
+pub(crate) mod verify;
+
+pub use finding::{Euler, Finding, SubdivisionError};
+pub use locate::Location;
+pub use outline::OutlinePart;
+pub use region::{CurveSide, Region};
+pub use subdivision::Subdivision;
+pub use verify::report::{Checkpoint, Mismatch, Origin, Reason, Unverified, Verification};
+pub use verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};

@@ -17,14 +17,20 @@
 //! - `document`: the file of a stack (feature `serde`)
 
 mod candidates;
-pub mod change;
-pub mod conditions;
+pub(crate) mod change;
+pub(crate) mod conditions;
 #[cfg(feature = "serde")]
-pub mod document;
-pub mod meeting;
+pub(crate) mod document;
+pub(crate) mod meeting;
 mod sample;
 mod search;
 mod structure;
+
+pub use change::{Change, Effect};
+pub use conditions::MeetingKind;
+#[cfg(feature = "serde")]
+pub use document::{LayerDocument, StackDocument};
+pub use meeting::StackMeeting;
 
 use std::fmt::Debug;
 
@@ -32,7 +38,6 @@ use crate::atlas::{Atlas, AtlasOptions};
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::TraceError;
-use crate::stack::change::Change;
 use crate::stack::search::Search;
 use crate::stack::structure::Structure;
 use crate::survey::Surveyor;
@@ -72,7 +77,7 @@ impl Default for StackOptions {
 ///
 /// ```
 /// use std::convert::Infallible;
-/// use stickslip_tracer::{Family, FreeRun, Point, Stack, StackOptions, Window};
+/// use stickslip_tracer::{Family, FreeRun, Point, Window, stack::{Stack, StackOptions}};
 ///
 /// /// A guard that fires inside a circle, whose radius is the third parameter.
 /// struct Disc(f64);

@@ -40,18 +40,30 @@
 //! - `margins`: tracing by margins alone
 //! - `follow`: one boundary, with monitors
 
-pub mod branch;
+pub(crate) mod branch;
 mod builder;
 mod corrector;
 mod cut;
-pub mod end;
-pub mod extrema;
+pub(crate) mod end;
+pub(crate) mod extrema;
 mod fit;
-pub mod follow;
-pub mod margins;
+pub(crate) mod follow;
+pub(crate) mod margins;
 mod naming;
-pub mod network;
-pub mod runs;
-pub mod seed;
-pub mod special_points;
-pub mod tracer;
+pub(crate) mod network;
+pub(crate) mod runs;
+pub(crate) mod seed;
+pub(crate) mod special_points;
+pub(crate) mod tracer;
+
+pub use branch::Branch;
+pub use end::{End, Special, Stop};
+pub use extrema::Extremum;
+pub use follow::{Followed, Monitor, MonitorZero, follow};
+pub use margins::trace_by_margins;
+pub use network::{Network, NetworkOf, TraceStatistics, Unresolved};
+pub use runs::Runs;
+pub use seed::Seed;
+pub use special_points::SpecialPoint;
+pub use tracer::Tracer;
+pub use tracer::count::Count;

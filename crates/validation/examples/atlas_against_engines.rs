@@ -17,7 +17,9 @@ use stickslip::model::{Collider, exact};
 use stickslip::plane::{CollisionEvent, CollisionLabel, CollisionPlane};
 use stickslip::solver::margin::Margin;
 use stickslip::tracer::{
-    Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
+    Point, TraceOptions,
+    regions::{Location, Subdivision, VerifyOptions, verify_with},
+    tracing::Tracer,
 };
 
 type Interval = (f64, f64);

@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
-use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Series};
+use stickslip_figure::pictures::chart::{self, ChartAxis, LineChart, Series};
 use stickslip_figure::style::{BLUE, VERMILION};
 
 /// A line of a file: time in s, and the energies of motion and of spin.
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let last = table[table.len() - 1][0].max(constant[constant.len() - 1][0]);
     let axis = |name, range| ChartAxis { name, range, scale: Scale::Logarithmic };
-    let picture = chart::draw(&Chart {
+    let picture = chart::draw(&LineChart {
         title: "Mean energies in a gas of rough spheres",
         x: axis("time in s", (table[1][0].min(constant[1][0]), last)),
         y: axis("energy, as a part of that of motion at the start", (5e-5, 1.0)),

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use stickslip::model::{
-    Collider, Collision, Contact, Damping, End, HistoryOf, Law, Normal, Tangential, linear,
+    Collider, Collision, Contact, ContactEnd, Damping, HistoryOf, Law, Normal, Tangential, linear,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -43,13 +43,13 @@ fn laws() -> Vec<(&'static str, Law)> {
         history: HistoryOf::Displacement,
         rescaled: false,
         limit_damping: false,
-        end: End::Overlap,
+        end: ContactEnd::Overlap,
         ..Law::PAPER
     };
     let limited = Law { limit_damping: true, ..law };
     vec![
         ("no damping", Law { damping: Damping::None, ..law }),
-        ("ends at F = 0", Law { end: End::Force, ..law }),
+        ("ends at F = 0", Law { end: ContactEnd::Force, ..law }),
         ("limited, ends at x = 0", limited),
         ("attracting", law),
         ("attracting, force history", Law { history: HistoryOf::Force, ..law }),
@@ -63,7 +63,7 @@ fn random(law: Law, seed: u64) -> Contact {
     let (kappa, psi, strong) = (between(1e-2, 1e3), between(1e-3, 5.0), between(1e-2, 20.0));
     let damping = match (law.damping, law.end, law.limit_damping) {
         (Damping::None, ..) => 0.0,
-        (_, End::Force, _) | (.., true) if random.bool() => strong,
+        (_, ContactEnd::Force, _) | (.., true) if random.bool() => strong,
         _ => 1.9 * random.f64(),
     };
     let tangential_damping = if random.bool() { 2.0 * random.f64() } else { 0.0 };

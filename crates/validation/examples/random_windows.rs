@@ -16,7 +16,7 @@ use std::io::Write;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use stickslip::model::{Damping, End, Engine, HistoryOf, Law, Normal, Tangential};
+use stickslip::model::{ContactEnd, Damping, Engine, HistoryOf, Law, Normal, Tangential};
 use stickslip::plane::Range;
 use stickslip::plane::atlas::{self, Frame};
 use stickslip::plane::progress::SILENT;
@@ -95,14 +95,14 @@ fn frame(random: &mut fastrand::Rng, least: f64, undamped: bool, laws: bool) -> 
 
 fn law(random: &mut fastrand::Rng) -> Law {
     let [linear, constant, displacement, rescaled, limited] = [(); 5].map(|()| random.bool());
-    let end = if random.bool() { End::Force } else { End::Overlap };
+    let end = if random.bool() { ContactEnd::Force } else { ContactEnd::Overlap };
     Law {
         normal: if linear { Normal::Linear } else { Normal::Hertz },
         damping: [Damping::Linear, Damping::Viscoelastic, Damping::Tsuji][random.usize(..3)],
         tangential: if constant { Tangential::Constant } else { Tangential::Mindlin },
         history: if displacement { HistoryOf::Displacement } else { HistoryOf::Force },
         rescaled,
-        limit_damping: limited && end == End::Overlap,
+        limit_damping: limited && end == ContactEnd::Overlap,
         end,
         ..Law::PAPER
     }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
+use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, MapValues};
 use stickslip_files::input::range::Size;
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::StoredFile;
@@ -100,7 +100,7 @@ pub fn run(arguments: &BasinsArguments) -> Result<(), Failure> {
             vertical: MapAxis { name: &y.name, range: (y.range.low, y.range.high) },
             columns: size.columns,
             rows: size.rows,
-            values: Values::Switches(&labels),
+            values: MapValues::Switches(&labels),
             lines: Vec::new(),
             points: Vec::new(),
         };

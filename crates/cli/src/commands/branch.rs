@@ -4,7 +4,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use stickslip_figure::Svg;
-use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
+use stickslip_figure::pictures::branch::{
+    BranchCurve, BranchPoint, BranchStretch, SpecialMark, draw,
+};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::picture::PictureFile;
@@ -206,12 +208,12 @@ fn curve(found: &FoundOrbit, branch: &Branch, shown: usize) -> Svg {
     let rule = branch.points[0].segments[0].leg.name(system);
     let component = format!("{} before {rule}", system.components[shown].name);
     let stretch = |orbit: &Orbit| match (orbit.is_admissible(), orbit.is_stable()) {
-        (false, _) => Stretch::Virtual,
-        (true, true) => Stretch::Stable,
-        (true, false) => Stretch::Unstable,
+        (false, _) => BranchStretch::Virtual,
+        (true, true) => BranchStretch::Stable,
+        (true, false) => BranchStretch::Unstable,
     };
     let points = branch.points.iter();
-    let specials = branch.specials.iter().map(|it| SpecialPoint {
+    let specials = branch.specials.iter().map(|it| SpecialMark {
         name: it.kind.name(),
         at: at(&it.orbit),
         behind: it.behind,

@@ -4,7 +4,9 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use serde::Deserialize;
-use stickslip_figure::pictures::branch::{BranchCurve, BranchPoint, SpecialPoint, Stretch, draw};
+use stickslip_figure::pictures::branch::{
+    BranchCurve, BranchPoint, BranchStretch, SpecialMark, draw,
+};
 use stickslip_files::input::source;
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::picture::PictureFile;
@@ -133,7 +135,7 @@ fn table(out: &mut dyn Write, curve: &CurveRecord) -> io::Result<()> {
 fn picture_of(document: &Document<CurveRecord>) -> stickslip_figure::Svg {
     let curve = &document.content;
     let points = curve.points.iter();
-    let meetings = curve.meetings.iter().map(|it| SpecialPoint {
+    let meetings = curve.meetings.iter().map(|it| SpecialMark {
         name: &it.name,
         at: at(curve, &it.orbit),
         behind: it.behind,
@@ -143,7 +145,7 @@ fn picture_of(document: &Document<CurveRecord>) -> stickslip_figure::Svg {
         title: &format!("{}: {kind} of a periodic orbit", document.system),
         axes: [&curve.parameters[0], &curve.parameters[1]],
         points: points
-            .map(|it| BranchPoint { at: at(curve, it), stretch: Stretch::Special })
+            .map(|it| BranchPoint { at: at(curve, it), stretch: BranchStretch::Special })
             .collect(),
         specials: meetings.collect(),
     })

@@ -12,7 +12,7 @@ use stickslip_files::output::csv::Rows;
 use stickslip_files::output::impact_rows::{self, EVENTS};
 use stickslip_files::output::json;
 use stickslip_files::output::picture::{AnimationFile, PictureFile};
-use stickslip_model::spheres::quantity::{self, Quantity};
+use stickslip_model::spheres::quantity::{self, PhysicalQuantity};
 use stickslip_model::spheres::{Encounter, ImpactReport};
 use stickslip_model::{CollisionFailure, Engine, Law, document};
 
@@ -116,7 +116,7 @@ impl VelocityArguments {
     }
 }
 
-fn read(quantity: &Quantity, text: &str) -> Result<f64, String> {
+fn read(quantity: &PhysicalQuantity, text: &str) -> Result<f64, String> {
     parameter::quantity(quantity, text)
 }
 

@@ -11,7 +11,7 @@ use stickslip_files::output::file::STANDARD_OUTPUT;
 use stickslip_files::output::rows::{LOCATED, LOCATED_ORBITS, LOCATED_RUNS};
 use stickslip_model::Contact;
 use stickslip_plane::atlas::switch_count;
-use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point};
+use stickslip_tracer::{Atlas, Names, Point, hybrid::Itinerary, regions::Location};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};

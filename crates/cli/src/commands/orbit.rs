@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use stickslip_figure::Svg;
-use stickslip_figure::pictures::{self, run::Run};
+use stickslip_figure::pictures::{self, run::RunPicture};
 use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
@@ -117,7 +117,7 @@ fn draw(found: &FoundOrbit) -> Result<Svg, Failure> {
     });
     let ends: Vec<_> = ends.collect();
     let pick = |state: &[f64]| shown.iter().map(|&component| state[component]).collect();
-    Ok(pictures::run::draw(&Run {
+    Ok(pictures::run::draw(&RunPicture {
         title: &format!("{}: a periodic orbit", found.name),
         time: "time t",
         names: shown.iter().map(|&component| &*system.components[component].name).collect(),

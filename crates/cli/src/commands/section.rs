@@ -7,7 +7,7 @@ use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::canvas::style::{BLUE, GREEN, INK, PURPLE, VERMILION};
-use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
+use stickslip_figure::pictures::chart::{self, ChartAxis, LineChart, Mark, Series, Shape};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::StoredFile;
 use stickslip_files::output::picture::PictureFile;
@@ -235,7 +235,7 @@ fn chart_of(title: &str, [x, y]: [&str; 2], series: Vec<Series>) -> Svg {
     let (across, up) = (range(|it| it.0), range(|it| it.1));
     let x = ChartAxis { name: x, range: across, scale: Scale::Linear };
     let y = ChartAxis { name: y, range: up, scale: Scale::Linear };
-    chart::draw(&Chart { title, x, y, series })
+    chart::draw(&LineChart { title, x, y, series })
 }
 
 /// The picture of exponents over a parameter, and of zero. Those that are −∞ are not drawn.

@@ -13,7 +13,10 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, Frame};
 use stickslip_plane::progress::InParallel;
 use stickslip_plane::stack::{damped, stack};
-use stickslip_tracer::{Stack, StackOptions, Watch};
+use stickslip_tracer::{
+    Watch,
+    stack::{Stack, StackOptions},
+};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver};
@@ -148,7 +151,8 @@ fn runs(plane: &SystemPlane, arguments: &StackArguments) -> Result<(), Failure> 
         let at = error.source().map_or_else(String::new, |source| format!(": {source}"));
         Failure::Family(format!("{error}{at}"))
     })?;
-    let document = stickslip_tracer::StackDocument::of_runs(&made, &options, &plane.names, name);
+    let document =
+        stickslip_tracer::stack::StackDocument::of_runs(&made, &options, &plane.names, name);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
         let picture = pictures::stack::draw_runs(&made, &plane.names, name);

@@ -11,7 +11,7 @@ use stickslip_files::output::file::OutputFile;
 use stickslip_files::output::{json, table_npz};
 use stickslip_plane::Range;
 use stickslip_practice::tables::{
-    self, Table, TableDocument, TableSettings, TableVerification, TableWindow,
+    self, RestitutionTable, TableDocument, TableSettings, TableVerification, TableWindow,
 };
 
 use crate::error::Failure;
@@ -74,16 +74,21 @@ pub struct TableArguments {
 
     /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3, with other laws than the paper's from
     /// 1e-9
-    #[arg(long, value_name = "E", help_heading = "Table", allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", help_heading = "RestitutionTable", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option, default_value = "1e-8")]
     pub bound: f64,
 
     /// Give the table the number of the atlas' region at each place too, with its switches
-    #[arg(long, help_heading = "Table")]
+    #[arg(long, help_heading = "RestitutionTable")]
     pub regions: bool,
 
     /// What names in a C header begin with
-    #[arg(long, value_name = "NAME", help_heading = "Table", default_value = "stickslip")]
+    #[arg(
+        long,
+        value_name = "NAME",
+        help_heading = "RestitutionTable",
+        default_value = "stickslip"
+    )]
     pub prefix: String,
 
     /// File for the table: JSON, NumPy arrays or a C header; may be given more than once
@@ -176,7 +181,7 @@ impl TableFormat {
     }
 }
 
-fn summary(out: &mut dyn Write, table: &Table) -> io::Result<()> {
+fn summary(out: &mut dyn Write, table: &RestitutionTable) -> io::Result<()> {
     let TableVerification { points, largest_error, x, y, largest_error_of_eps_n } =
         table.verification;
     let [slabs, strips] = table.pieces();

@@ -222,7 +222,8 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
         surveyor.atlas(&family, &plane.window)
     })?;
     let atlas = atlas.map_err(|error| Failure::Family(error.to_string()))?;
-    let document = stickslip_tracer::Document::of_runs(&atlas, &options, &plane.names);
+    let document =
+        stickslip_tracer::document::AtlasDocument::of_runs(&atlas, &options, &plane.names);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.names)))?);

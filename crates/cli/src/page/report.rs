@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Value, json};
 use stickslip_figure::number;
 use stickslip_reproduction::figures::Section;
-use stickslip_studies::{Cell, Table};
+use stickslip_studies::{Cell, StudyTable};
 
 use super::{INTRODUCTION, TITLE};
 use crate::schema;
@@ -72,7 +72,7 @@ pub fn markdown(sections: &[Section]) -> String {
     text
 }
 
-fn rows(table: &Table) -> String {
+fn rows(table: &StudyTable) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let cell = |cell: &Cell| match cell {
         Cell::Number(value) if !value.is_nan() => number(*value, 5),

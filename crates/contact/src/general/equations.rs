@@ -7,8 +7,8 @@ use stickslip_solver::Number;
 use super::decay::{Decay, Jet, product};
 use super::exponents::Exponents;
 use super::{
-    Beginning, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING,
-    STATE, Stage, T as TIME, U, V, W,
+    Beginning, ContactMode, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, ModeProgress, RATE,
+    SPRING, STATE, Stage, T as TIME, U, V, W,
 };
 use crate::contact::Contact;
 use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side, is_open};
@@ -136,7 +136,7 @@ impl Equations {
 
     /// Coulomb's limit in the mode, if it is `limit` at rest.
     #[inline(always)]
-    pub fn rubbed<T: Number>(&self, mode: Mode, y: &[T; STATE], limit: T) -> T {
+    pub fn rubbed<T: Number>(&self, mode: ContactMode, y: &[T; STATE], limit: T) -> T {
         match &self.decay {
             Some(decay) => decay.share(mode.heading, y[W]) * limit,
             None => limit,
@@ -212,12 +212,12 @@ impl Equations {
         }
         if e.damped {
             let ratio = self.tangential_damping * psi / self.first_limit(psi);
-            let mode = Mode {
+            let mode = ContactMode {
                 heading: Side::Positive,
                 regime: Regime::Slip,
                 side: Side::Positive,
                 stage: Stage::Main,
-                progress: Progress::Touched,
+                progress: ModeProgress::Touched,
             };
             let may_fall_behind = e.remembers && e.of(Stage::Main).rho == e.d;
             let excess = || self.stretching(mode, &powers(0.0), &self.start(psi));
@@ -289,17 +289,17 @@ impl Equations {
 
     /// The right-hand side of a mode.
     #[inline(always)]
-    pub fn field<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+    pub fn field<T: Number>(&self, mode: ContactMode, y: &[T; STATE]) -> [T; STATE] {
         match (mode.regime, mode.progress) {
             (Regime::Slip, _) => self.slip(mode, y),
-            (Regime::Stick, Progress::Settled) => self.stick(mode, y),
+            (Regime::Stick, ModeProgress::Settled) => self.stick(mode, y),
             (Regime::Stick, _) => self.first_stick(mode, y),
         }
     }
 
     /// The right-hand side of a slip phase.
     #[inline(always)]
-    pub fn slip<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+    pub fn slip<T: Number>(&self, mode: ContactMode, y: &[T; STATE]) -> [T; STATE] {
         let (mut slope, dv) = self.normal(mode.stage, &powers(y[U]), y);
         let dv = self.rubbed(mode, y, dv);
         slope[W] = dv * (mode.side.sign() * mode.stage.sign() / self.velocity_unit);
@@ -308,7 +308,7 @@ impl Equations {
 
     /// The right-hand side of a stick phase that has settled.
     #[inline(always)]
-    pub fn stick<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+    pub fn stick<T: Number>(&self, mode: ContactMode, y: &[T; STATE]) -> [T; STATE] {
         let e = self.exponents;
         let of = e.of(mode.stage);
         let u = &powers(y[U]);
@@ -325,7 +325,7 @@ impl Equations {
 
     /// The right-hand side of a stick phase until it settles.
     #[inline(always)]
-    pub fn first_stick<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+    pub fn first_stick<T: Number>(&self, mode: ContactMode, y: &[T; STATE]) -> [T; STATE] {
         let mut slope = self.stick(mode, y);
         let [near, far] = self.gaps(mode, &powers(y[U]), y).map(|gap| gap.2);
         slope[GAP] = y[RATE] * self.scale;
@@ -355,7 +355,7 @@ impl Equations {
     /// The gaps between the force and its limit in a stick phase, on the side of the phase and on
     /// the other one, divided by u^m.
     #[inline(always)]
-    fn gaps<T: Number>(&self, mode: Mode, u: &Powers<T>, y: &[T; STATE]) -> [Jet<T>; 2] {
+    fn gaps<T: Number>(&self, mode: ContactMode, u: &Powers<T>, y: &[T; STATE]) -> [Jet<T>; 2] {
         let e = self.exponents;
         let of = e.of(mode.stage);
         let n = f64::from(e.n);
@@ -401,7 +401,7 @@ impl Equations {
 
     /// The values of the guards.
     #[inline(always)]
-    pub fn guards<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; GUARDS] {
+    pub fn guards<T: Number>(&self, mode: ContactMode, y: &[T; STATE]) -> [T; GUARDS] {
         let e = self.exponents;
         let u = &powers(y[U]);
         let of = e.of(mode.stage);
@@ -416,7 +416,7 @@ impl Equations {
                 (end, pull - self.rubbed(mode, y, limit), T::from(1.0))
             }
             Regime::Stick => {
-                if mode.progress == Progress::Settled {
+                if mode.progress == ModeProgress::Settled {
                     let pull = self.tested_pull(mode.stage, u, y) * mode.side.sign();
                     let limit = u[e.d - of.shared] * push * mode.stage.sign();
                     let limit = self.rubbed(mode, y, limit);
@@ -435,7 +435,7 @@ impl Equations {
 
     /// The guard with which a stick phase is left whose limit has fallen to zero in the state `y`,
     /// and the time from there to the zero.
-    pub fn last_slip(&self, mode: Mode, y: &[f64; STATE]) -> (usize, f64) {
+    pub fn last_slip(&self, mode: ContactMode, y: &[f64; STATE]) -> (usize, f64) {
         let u = &powers(y[U]);
         let [_, near, far, ..] = self.guards(mode, y);
         let falls = self.gaps(mode, u, y).map(|gap| gap.1);
@@ -447,7 +447,7 @@ impl Equations {
     /// How fast the spring would leave its limit in stick, s dQ/ds − dL/ds, divided by a power of
     /// u. Slip ends where that vanishes.
     #[inline(always)]
-    fn stretching<T: Number>(&self, mode: Mode, u: &Powers<T>, y: &[T; STATE]) -> T {
+    fn stretching<T: Number>(&self, mode: ContactMode, u: &Powers<T>, y: &[T; STATE]) -> T {
         let e = self.exponents;
         let of = e.of(mode.stage);
         let (side, sign) = (mode.side.sign(), mode.stage.sign());
@@ -492,11 +492,11 @@ impl Equations {
     }
 
     /// The state with which `next` begins, from the state `y` at the switch.
-    pub fn enter(&self, next: Mode, y: &[f64; STATE]) -> [f64; STATE] {
+    pub fn enter(&self, next: ContactMode, y: &[f64; STATE]) -> [f64; STATE] {
         let u = &powers(y[U]);
         let of = self.exponents.of(next.stage);
         // Where a contact is touched, the limit is zero, and so is the spring.
-        let size = if next.progress == Progress::Touched {
+        let size = if next.progress == ModeProgress::Touched {
             0.0
         } else {
             let push = self.push(next.stage, u, y) * next.stage.sign();
@@ -509,7 +509,7 @@ impl Equations {
         }
         if next.regime == Regime::Stick {
             // A contact starts without history.
-            if (next.progress, next.stage) != (Progress::Touched, Stage::Main) {
+            if (next.progress, next.stage) != (ModeProgress::Touched, Stage::Main) {
                 y[SPRING] = self.spring_for(next.stage, u, &y, size * next.side.sign());
             }
             self.open(next, &mut y);
@@ -518,23 +518,23 @@ impl Equations {
     }
 
     /// Sets the gaps with which a stick phase begins. What is zero there is exactly zero.
-    fn open(&self, mode: Mode, y: &mut [f64; STATE]) {
+    fn open(&self, mode: ContactMode, y: &mut [f64; STATE]) {
         let [near, far] = self.gaps(mode, &powers(y[U]), y);
         let (length, rate) = (self.scale, self.scale * self.scale);
         match (mode.progress, mode.stage) {
-            (Progress::Touched, Stage::Tail) => {}
-            (Progress::Touched, _) => (y[GAP], y[FAR_GAP]) = (near.0 / length, far.0 / length),
+            (ModeProgress::Touched, Stage::Tail) => {}
+            (ModeProgress::Touched, _) => (y[GAP], y[FAR_GAP]) = (near.0 / length, far.0 / length),
             _ => y[FAR_GAP] = far.0 / length,
         }
         y[FAR_RATE] = far.1 / rate;
         // A limit that a history keeps is left with the rate 0.
-        if mode.progress != Progress::Switched || !self.exponents.remembers {
+        if mode.progress != ModeProgress::Switched || !self.exponents.remembers {
             y[RATE] = near.1 / rate;
         }
     }
 
     /// Whether the gaps of a stick phase are open: see [`is_open`].
-    pub fn is_open(&self, mode: Mode, y: &[f64; STATE]) -> bool {
+    pub fn is_open(&self, mode: ContactMode, y: &[f64; STATE]) -> bool {
         let e = self.exponents;
         let u = &powers(y[U]);
         let [damping, dashpot] = [y[V] * self.force_by_v, y[W] * self.dashpot].map(f64::abs);
@@ -544,7 +544,7 @@ impl Equations {
 
     /// Whether the gap on the side of a stick phase, in its first step, grows from within
     /// rounding of 0. One that falls there is on its way to a graze.
-    pub fn is_at_limit(&self, mode: Mode, y: &[f64; STATE]) -> bool {
+    pub fn is_at_limit(&self, mode: ContactMode, y: &[f64; STATE]) -> bool {
         let u = &powers(y[U]);
         let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared]
             * self.push(mode.stage, u, y);
@@ -553,7 +553,7 @@ impl Equations {
     }
 
     /// The state `y` with the gaps with which a stick phase begins.
-    pub fn at_limit(&self, mode: Mode, mut y: [f64; STATE]) -> [f64; STATE] {
+    pub fn at_limit(&self, mode: ContactMode, mut y: [f64; STATE]) -> [f64; STATE] {
         for component in [GAP, RATE, FAR_GAP, FAR_RATE] {
             y[component] = 0.0;
         }

@@ -2,24 +2,25 @@
 
 use num_dual::Dual64;
 use stickslip_solver::State;
-use stickslip_solver::sensitivity::{Change, Differentiable};
+use stickslip_solver::sensitivity::{Differentiable, Variation};
 
 use super::Regularized;
 use super::components::{STATE, U, array};
-use super::equations::{Equations, Parameter};
+use super::equations::{ContactParameter, Equations};
 use crate::phase::{END, GUARDS, OTHER_SIDE, Phase, SAME_SIDE};
 
 /// The number of parameters.
-pub const PARAMETERS: usize = Parameter::ALL.len();
+pub const PARAMETERS: usize = ContactParameter::ALL.len();
 
 impl Regularized {
     /// The equations and a state, with their derivatives along a change.
     pub fn along(
         &self,
         y: &State<STATE>,
-        change: &Change<STATE>,
+        change: &Variation<STATE>,
     ) -> (Equations<Dual64>, [Dual64; STATE]) {
-        let equations = self.equations.by(change.parameter.map(|index| Parameter::ALL[index]));
+        let equations =
+            self.equations.by(change.parameter.map(|index| ContactParameter::ALL[index]));
         (equations, std::array::from_fn(|i| Dual64::new(array(y)[i], change.y[i])))
     }
 }
@@ -31,7 +32,7 @@ impl Differentiable<STATE, GUARDS> for Regularized {
         phase: Phase,
         _s: f64,
         y: &State<STATE>,
-        change: &Change<STATE>,
+        change: &Variation<STATE>,
     ) -> State<STATE> {
         let (equations, y) = self.along(y, change);
         equations.field::<true>(phase, &y).map(|part| part.eps).into()
@@ -42,7 +43,7 @@ impl Differentiable<STATE, GUARDS> for Regularized {
         phase: Phase,
         _s: f64,
         y: &State<STATE>,
-        change: &Change<STATE>,
+        change: &Variation<STATE>,
     ) -> [f64; GUARDS] {
         let (equations, y) = self.along(y, change);
         let guards = equations.guards::<true>(phase, &y).map(|guard| guard.eps);
@@ -57,7 +58,7 @@ impl Differentiable<STATE, GUARDS> for Regularized {
         guard: usize,
         _s: f64,
         y: &State<STATE>,
-        change: &Change<STATE>,
+        change: &Variation<STATE>,
     ) -> State<STATE> {
         let next = self.next(phase, guard, y);
         let (equations, y) = self.along(y, change);

@@ -8,7 +8,7 @@ use stickslip_solver::Number;
 
 use super::components::{GAP, RATE, SPRING, STATE, T as TIME, U, V, W};
 use crate::contact::Contact;
-use crate::phase::{GUARDS, Phase, Progress, Regime, Side, is_open};
+use crate::phase::{GUARDS, Phase, PhaseProgress, Regime, Side, is_open};
 
 /// The equations with the parameters of one contact.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +71,7 @@ pub struct Force<T> {
 /// A parameter of the derivatives. Stiffness and impact ratio may have any size: their logarithms
 /// are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
+pub enum ContactParameter {
     /// ln κ.
     LnKappa,
     /// ln ψ.
@@ -80,7 +80,7 @@ pub enum Parameter {
     Damping,
 }
 
-impl Parameter {
+impl ContactParameter {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::LnKappa, Self::LnPsi, Self::Damping];
 }
@@ -127,9 +127,9 @@ impl Equations<f64> {
 
     /// The same equations with their derivatives with respect to a parameter. The units c, σ and
     /// that of V are kept constant.
-    pub fn by(&self, parameter: Option<Parameter>) -> Equations<Dual64> {
-        let by_kappa = f64::from(parameter == Some(Parameter::LnKappa));
-        let by_damping = f64::from(parameter == Some(Parameter::Damping));
+    pub fn by(&self, parameter: Option<ContactParameter>) -> Equations<Dual64> {
+        let by_kappa = f64::from(parameter == Some(ContactParameter::LnKappa));
+        let by_damping = f64::from(parameter == Some(ContactParameter::Damping));
         // Three of the numbers are proportional to ω = √κ.
         let like_root = |value: f64| Dual64::new(value, 0.5 * by_kappa * value);
         Equations {
@@ -168,12 +168,12 @@ impl Equations<f64> {
     }
 
     /// The derivative of the state at the start of contact with respect to a parameter.
-    pub fn start_by(&self, psi: f64, parameter: Parameter) -> [f64; STATE] {
+    pub fn start_by(&self, psi: f64, parameter: ContactParameter) -> [f64; STATE] {
         let mut y = [0.0; STATE];
         match parameter {
-            Parameter::LnKappa => {}
-            Parameter::LnPsi => y[W] = psi / self.velocity_unit,
-            Parameter::Damping => y[RATE] = self.rate_scale,
+            ContactParameter::LnKappa => {}
+            ContactParameter::LnPsi => y[W] = psi / self.velocity_unit,
+            ContactParameter::Damping => y[RATE] = self.rate_scale,
         }
         y
     }
@@ -288,7 +288,7 @@ impl<T: Number> Equations<T> {
     pub fn field<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; STATE] {
         match (phase.regime, phase.progress) {
             (Regime::Slip, _) => self.slip::<DAMPED>(phase.side, y),
-            (Regime::Stick, Progress::Settled) => self.stick::<DAMPED>(y),
+            (Regime::Stick, PhaseProgress::Settled) => self.stick::<DAMPED>(y),
             (Regime::Stick, _) => self.first_stick::<DAMPED>(phase.side, y),
         }
     }
@@ -311,7 +311,7 @@ impl<T: Number> Equations<T> {
             }
             Regime::Stick => {
                 let pull = (self.spring_force * y[SPRING]) * phase.side.sign();
-                if phase.progress == Progress::Settled {
+                if phase.progress == PhaseProgress::Settled {
                     let force = u * self.push::<DAMPED>(u, v);
                     [end, force - pull, force + pull]
                 } else if DAMPED {

@@ -47,7 +47,7 @@ const MOST_SWITCHES: usize = 1000;
 
 /// The guards that fire in a collision, in order, with its margins.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Margins {
+pub struct ContactMargins {
     /// The guard of each switch, [`SAME_SIDE`] or [`OTHER_SIDE`].
     pub fired: Vec<usize>,
     /// The margins in the order of their phases, each with its positive value.
@@ -75,7 +75,7 @@ pub struct Margins {
 ///
 /// # Errors
 /// As [`collide`](super::collide), and [`ExactError::TooManySwitches`] for more than 1000 switches.
-pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
+pub fn margins(contact: &Contact) -> Result<ContactMargins, ExactError> {
     checked(contact)?;
     with_trajectory(contact, All)
 }
@@ -84,10 +84,10 @@ pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
 struct All;
 
 impl Task for All {
-    type Output = Result<Margins, ExactError>;
+    type Output = Result<ContactMargins, ExactError>;
 
     fn run<T: Trajectory>(self, slide: &Slide<T>, contact: &Contact) -> Self::Output {
-        let mut found = Margins { fired: Vec::new(), near_misses: Vec::new() };
+        let mut found = ContactMargins { fired: Vec::new(), near_misses: Vec::new() };
         let mut exits = Vec::new();
         let mut sliding = match Phase::first(slide, contact.psi()) {
             Phase::Slip(sliding) => sliding,
@@ -116,7 +116,7 @@ impl Task for All {
 fn passed<T: Trajectory>(
     swing: &Swing<T>,
     exits: &mut Vec<Exit>,
-    found: &mut Margins,
+    found: &mut ContactMargins,
 ) -> SlipPhase {
     let release = Release::of(swing);
     let mut after_top = false;

@@ -1,6 +1,6 @@
 //! The normal motion: a damped oscillator that starts at x = 0 with the rate 1.
 
-use stickslip_contact::{Contact, End};
+use stickslip_contact::{Contact, ContactEnd};
 
 use super::oscillator::Oscillator;
 
@@ -91,12 +91,12 @@ impl Normal {
             (false, false) => 1.0,
         };
         let law = contact.law();
-        let attracts = a > 0.0 && law.end == End::Overlap && !law.limit_damping;
+        let attracts = a > 0.0 && law.end == ContactEnd::Overlap && !law.limit_damping;
         let rest = match law.end {
-            End::Overlap if attracts => 2.0 * half.asin() / frequency,
+            ContactEnd::Overlap if attracts => 2.0 * half.asin() / frequency,
             // Nothing pushes any more: x = a e^{−aτ} and v = −e^{−aτ}.
-            End::Overlap => a,
-            End::Force => 0.0,
+            ContactEnd::Overlap => a,
+            ContactEnd::Force => 0.0,
         };
         Self { oscillator, force_ends: 2.0 * crest, rest, attracts, crest }
     }
@@ -181,7 +181,7 @@ impl Normal {
     }
 
     /// The energy that damping takes, and that in the compression at the end, in units of m g_n².
-    pub fn energy(&self, end: End) -> (f64, f64) {
+    pub fn energy(&self, end: ContactEnd) -> (f64, f64) {
         let a = self.oscillator.damping;
         let kept = self.restitution();
         let lost = match end {
@@ -191,8 +191,8 @@ impl Normal {
         // At F = 0 the overlap is a times the rate.
         let compression = if self.attracts { 0.0 } else { 0.5 * a * a * kept * kept };
         match end {
-            End::Force => (lost - compression, compression),
-            End::Overlap => (lost, 0.0),
+            ContactEnd::Force => (lost - compression, compression),
+            ContactEnd::Overlap => (lost, 0.0),
         }
     }
 }
@@ -220,7 +220,7 @@ mod tests {
             let end = normal.at(Stage::Main, &normal.zero());
             assert_eq!(end.limit, 0.0);
             assert!((end.rate + normal.restitution()).abs() < 1e-13, "{damping}");
-            let (lost, left) = normal.energy(End::Force);
+            let (lost, left) = normal.energy(ContactEnd::Force);
             let kept = 0.5 * end.rate * end.rate;
             assert!((lost + left + kept - 0.5).abs() < 1e-13, "{damping}");
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::graph::{Binary, Formula, Graph, Node, Unary};
+use crate::graph::{Binary, Formula, FormulaNode, Graph, Unary};
 use crate::system::{Condition, System};
 
 /// Adds to what a system requires that its start, its end and its times have values: that what is
@@ -24,7 +24,7 @@ fn without_value(graph: &Graph, roots: Vec<Formula>) -> BTreeSet<usize> {
     let (mut found, mut left) = (BTreeSet::new(), roots);
     while let Some(formula) = left.pop() {
         let node = graph.node(formula);
-        if found.insert(formula.index()) && !matches!(node, Node::Select(..)) {
+        if found.insert(formula.index()) && !matches!(node, FormulaNode::Select(..)) {
             left.extend(node.operands());
         }
     }
@@ -32,12 +32,12 @@ fn without_value(graph: &Graph, roots: Vec<Formula>) -> BTreeSet<usize> {
 }
 
 /// Where a node has a value if its operands have one.
-fn of_node(graph: &mut Graph, node: Node) -> Vec<Condition> {
+fn of_node(graph: &mut Graph, node: FormulaNode) -> Vec<Condition> {
     let one = graph.constant(1.0);
     let not_negative = |formula| Condition { formula, below: false };
     let (function, a) = match node {
-        Node::RealPower(a, _) => return vec![not_negative(a)],
-        Node::Unary(function, a) => (function, a),
+        FormulaNode::RealPower(a, _) => return vec![not_negative(a)],
+        FormulaNode::Unary(function, a) => (function, a),
         _ => return Vec::new(),
     };
     let mut difference = |a, b| graph.binary(Binary::Sub, a, b);
@@ -62,7 +62,7 @@ fn of_node(graph: &mut Graph, node: Node) -> Vec<Condition> {
 fn add(system: &mut System, condition: Condition) {
     let graph = &mut system.graph;
     let positive = |graph: &Graph, formula| match graph.node(formula) {
-        Node::Unary(Unary::Neg, inner) => inner,
+        FormulaNode::Unary(Unary::Neg, inner) => inner,
         _ => formula,
     };
     let of = positive(graph, condition.formula);
@@ -75,10 +75,10 @@ fn add(system: &mut System, condition: Condition) {
 /// Whether a formula is seen to be 0 or above, so that its root has a value everywhere.
 fn is_never_negative(graph: &Graph, formula: Formula) -> bool {
     match graph.node(formula) {
-        Node::Constant(bits) => f64::from_bits(bits) >= 0.0,
-        Node::Unary(Unary::Square | Unary::Abs | Unary::Exp | Unary::Sqrt, _) => true,
-        Node::Power(_, n) => n % 2 == 0,
-        Node::Binary(Binary::Add | Binary::Mul | Binary::Div, a, b) => {
+        FormulaNode::Constant(bits) => f64::from_bits(bits) >= 0.0,
+        FormulaNode::Unary(Unary::Square | Unary::Abs | Unary::Exp | Unary::Sqrt, _) => true,
+        FormulaNode::Power(_, n) => n % 2 == 0,
+        FormulaNode::Binary(Binary::Add | Binary::Mul | Binary::Div, a, b) => {
             is_never_negative(graph, a) && is_never_negative(graph, b)
         }
         _ => false,

@@ -2,11 +2,11 @@
 
 use std::f64::consts::FRAC_2_SQRT_PI;
 
-use super::{Binary, Formula, Graph, Node, Unary, Variable};
+use super::{Binary, Formula, FormulaNode, Graph, Unary, Variable};
 
 impl Graph {
     /// The derivative of a formula, where `rate` gives the derivatives of what it reads. At a kink
-    /// it is the derivative of the piece that [`Node::Select`] and the like choose, and a jump is
+    /// it is the derivative of the piece that [`FormulaNode::Select`] and the like choose, and a jump is
     /// left out.
     pub fn slope(
         &mut self,
@@ -21,8 +21,8 @@ impl Graph {
             let mut inner = node.operands().map(|operand| slopes[operand.index()]);
             let slope = [(); 3].map(|()| inner.next().unwrap_or(zero));
             slopes[index] = match node {
-                Node::Constant(_) => zero,
-                Node::Variable(variable) => rate(self, variable),
+                FormulaNode::Constant(_) => zero,
+                FormulaNode::Variable(variable) => rate(self, variable),
                 _ if slope == [zero; 3] => zero,
                 // A node of the graph refers to nodes before it, and there are less than 2³².
                 #[expect(clippy::cast_possible_truncation)]
@@ -45,52 +45,52 @@ impl Graph {
     }
 
     /// The derivative of a function of formulas with these slopes.
-    fn chain(&mut self, whole: Formula, node: Node, [u, v, w]: [Formula; 3]) -> Formula {
+    fn chain(&mut self, whole: Formula, node: FormulaNode, [u, v, w]: [Formula; 3]) -> Formula {
         use Binary::{Add, Div, Max, Min, Mul, Sub};
         match node {
-            Node::Constant(_) | Node::Variable(_) => self.constant(0.0),
-            Node::Unary(Unary::Neg, _) => self.unary(Unary::Neg, u),
-            Node::Unary(function, a) => {
+            FormulaNode::Constant(_) | FormulaNode::Variable(_) => self.constant(0.0),
+            FormulaNode::Unary(Unary::Neg, _) => self.unary(Unary::Neg, u),
+            FormulaNode::Unary(function, a) => {
                 let outer = self.derivative(function, a, whole);
                 self.product(outer, u)
             }
-            Node::Binary(Add, ..) => self.binary(Add, u, v),
-            Node::Binary(Sub, ..) => self.binary(Sub, u, v),
-            Node::Binary(Mul, a, b) => {
+            FormulaNode::Binary(Add, ..) => self.binary(Add, u, v),
+            FormulaNode::Binary(Sub, ..) => self.binary(Sub, u, v),
+            FormulaNode::Binary(Mul, a, b) => {
                 let (left, right) = (self.product(u, b), self.product(a, v));
                 self.binary(Add, left, right)
             }
-            Node::Binary(Div, _, b) => {
+            FormulaNode::Binary(Div, _, b) => {
                 let part = self.product(whole, v);
                 let rest = self.binary(Sub, u, part);
                 self.binary(Div, rest, b)
             }
-            Node::Binary(Min, a, b) => {
+            FormulaNode::Binary(Min, a, b) => {
                 let difference = self.binary(Sub, b, a);
                 self.select(difference, u, v)
             }
-            Node::Binary(Max, a, b) => {
+            FormulaNode::Binary(Max, a, b) => {
                 let difference = self.binary(Sub, a, b);
                 self.select(difference, u, v)
             }
-            Node::Binary(Binary::Atan2, y, x) => {
+            FormulaNode::Binary(Binary::Atan2, y, x) => {
                 let (left, right) = (self.product(x, u), self.product(y, v));
                 let turned = self.binary(Sub, left, right);
                 let (x, y) = (self.unary(Unary::Square, x), self.unary(Unary::Square, y));
                 let square = self.binary(Add, x, y);
                 self.binary(Div, turned, square)
             }
-            Node::Power(a, n) => {
+            FormulaNode::Power(a, n) => {
                 let n = f64::from(n);
                 let (factor, less) = (self.constant(n), self.constant(n - 1.0));
                 self.power_slope(a, factor, less, u)
             }
-            Node::RealPower(a, n) => {
+            FormulaNode::RealPower(a, n) => {
                 let n = f64::from_bits(n);
                 let (factor, less) = (self.constant(n), self.constant(n - 1.0));
                 self.power_slope(a, factor, less, u)
             }
-            Node::Select(condition, ..) => self.select(condition, v, w),
+            FormulaNode::Select(condition, ..) => self.select(condition, v, w),
         }
     }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::{Body, Code, Inputs, Instruction, Op, Program};
-use crate::graph::{Binary, Formula, Graph, Node, Variable};
+use crate::graph::{Binary, Formula, FormulaNode, Graph, Variable};
 
 /// What an instruction reads.
 #[derive(Clone, Copy, PartialEq)]
@@ -62,11 +62,11 @@ impl Program {
             drafts: Vec::new(),
         };
         for index in (0..needed.len()).filter(|&index| needed[index]) {
-            if let Node::Constant(bits) = node(graph, index) {
+            if let FormulaNode::Constant(bits) = node(graph, index) {
                 compiler.pooled(f64::from_bits(bits));
-            } else if let Node::Power(_, n) = node(graph, index) {
+            } else if let FormulaNode::Power(_, n) = node(graph, index) {
                 compiler.pooled(f64::from(n));
-            } else if let Node::RealPower(_, n) = node(graph, index) {
+            } else if let FormulaNode::RealPower(_, n) = node(graph, index) {
                 compiler.pooled(f64::from_bits(n));
             }
         }
@@ -88,7 +88,7 @@ impl Program {
     }
 }
 
-fn node(graph: &Graph, index: usize) -> Node {
+fn node(graph: &Graph, index: usize) -> FormulaNode {
     graph.nodes()[index]
 }
 
@@ -97,14 +97,14 @@ fn prepared(graph: &Graph, formulas: &[Formula], needed: &[bool]) -> Vec<Formula
     let mut still = vec![false; needed.len()];
     for index in (0..needed.len()).filter(|&index| needed[index]) {
         still[index] = match node(graph, index) {
-            Node::Constant(_) | Node::Variable(Variable::Parameter(_)) => true,
-            Node::Variable(_) => false,
+            FormulaNode::Constant(_) | FormulaNode::Variable(Variable::Parameter(_)) => true,
+            FormulaNode::Variable(_) => false,
             node => node.operands().into_iter().all(|operand| still[operand.index()]),
         };
     }
     let is_made = |formula: &Formula| {
         still[formula.index()]
-            && !matches!(graph.node(*formula), Node::Constant(_) | Node::Variable(_))
+            && !matches!(graph.node(*formula), FormulaNode::Constant(_) | FormulaNode::Variable(_))
     };
     let moving = (0..needed.len()).filter(|&index| needed[index] && !still[index]);
     let read = moving.flat_map(|index| node(graph, index).operands());
@@ -130,16 +130,19 @@ fn joined(
         uses[operand.index()] = uses[operand.index()].saturating_add(1);
     }
     let constant = |formula: Formula| {
-        matches!(graph.node(formula), Node::Constant(_) | Node::Variable(Variable::Parameter(_)))
-            || prepared.contains_key(&formula.index())
+        matches!(
+            graph.node(formula),
+            FormulaNode::Constant(_) | FormulaNode::Variable(Variable::Parameter(_))
+        ) || prepared.contains_key(&formula.index())
     };
     let mut joined = vec![false; needed.len()];
     for index in indices() {
-        let Node::Binary(sum @ (Binary::Add | Binary::Sub), a, b) = node(graph, index) else {
+        let FormulaNode::Binary(sum @ (Binary::Add | Binary::Sub), a, b) = node(graph, index)
+        else {
             continue;
         };
         let fits = |product: Formula, other: Formula| {
-            let Node::Binary(Binary::Mul, p, q) = graph.node(product) else { return false };
+            let FormulaNode::Binary(Binary::Mul, p, q) = graph.node(product) else { return false };
             let unfit = sum == Binary::Sub && (constant(p) || constant(q));
             uses[product.index()] == 1 && !constant(product) && !constant(other) && !unfit
         };
@@ -169,8 +172,8 @@ impl Compiler<'_> {
             return Some(index(self.parameters + self.inputs.parameters) + place);
         }
         match self.graph.node(formula) {
-            Node::Constant(bits) => self.pooled.get(&bits).copied(),
-            Node::Variable(Variable::Parameter(parameter)) if self.inputs.fixed => {
+            FormulaNode::Constant(bits) => self.pooled.get(&bits).copied(),
+            FormulaNode::Variable(Variable::Parameter(parameter)) if self.inputs.fixed => {
                 Some(index(self.parameters) + parameter)
             }
             _ => None,
@@ -186,18 +189,22 @@ impl Compiler<'_> {
         use Operand::{None, Pool};
         let value = |formula: Formula| Operand::Value(formula.index());
         match node(self.graph, index) {
-            Node::Constant(_) | Node::Variable(_) => {}
-            Node::Unary(function, a) => self.push(function.into(), index, [value(a), None, None]),
-            Node::Power(a, n) => {
+            FormulaNode::Constant(_) | FormulaNode::Variable(_) => {}
+            FormulaNode::Unary(function, a) => {
+                self.push(function.into(), index, [value(a), None, None])
+            }
+            FormulaNode::Power(a, n) => {
                 let n = self.pooled(f64::from(n));
                 self.push(Op::Power, index, [value(a), Pool(n), None]);
             }
-            Node::RealPower(a, n) => {
+            FormulaNode::RealPower(a, n) => {
                 let n = self.pooled(f64::from_bits(n));
                 self.push(Op::RealPower, index, [value(a), Pool(n), None]);
             }
-            Node::Select(a, b, c) => self.push(Op::Select, index, [value(a), value(b), value(c)]),
-            Node::Binary(function, a, b) => self.draft_binary(index, function, a, b),
+            FormulaNode::Select(a, b, c) => {
+                self.push(Op::Select, index, [value(a), value(b), value(c)])
+            }
+            FormulaNode::Binary(function, a, b) => self.draft_binary(index, function, a, b),
         }
     }
 
@@ -234,7 +241,7 @@ impl Compiler<'_> {
     fn product_in(&self, a: Formula, b: Formula) -> Option<(Formula, Formula, Formula, bool)> {
         [(a, b, true), (b, a, false)].into_iter().find_map(|(product, rest, first)| {
             match self.graph.node(product) {
-                Node::Binary(Binary::Mul, p, q) if self.joined[product.index()] => {
+                FormulaNode::Binary(Binary::Mul, p, q) if self.joined[product.index()] => {
                     Some((p, q, rest, first))
                 }
                 _ => None,
@@ -253,7 +260,7 @@ impl Compiler<'_> {
         let inputs = components + if fixed { 0 } else { self.inputs.parameters };
         let mut register = vec![u32::MAX; needed.len()];
         for node in (0..needed.len()).filter(|&node| needed[node]) {
-            let Node::Variable(variable) = self.graph.nodes()[node] else { continue };
+            let FormulaNode::Variable(variable) = self.graph.nodes()[node] else { continue };
             register[node] = match variable {
                 Variable::Time => index(inputs),
                 Variable::Component(i) if (i as usize) < components => i,

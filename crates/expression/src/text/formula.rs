@@ -3,7 +3,7 @@
 use super::reader::{RESERVED, Reader};
 use super::tokens::Token;
 use super::{TextError, names};
-use crate::graph::{Binary, Formula, Node, Unary, Variable};
+use crate::graph::{Binary, Formula, FormulaNode, Unary, Variable};
 
 /// How deep parentheses, signs and branches may be nested.
 const DEEPEST: usize = 200;
@@ -182,13 +182,13 @@ impl Reader<'_> {
         let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
         let graph = &self.system.graph;
         let is_off = |it: Formula| match graph.node(it) {
-            Node::Select(_, below, inner) => {
-                matches!(graph.node(inner), Node::Select(_, above, _) if above == below)
+            FormulaNode::Select(_, below, inner) => {
+                matches!(graph.node(inner), FormulaNode::Select(_, above, _) if above == below)
             }
             _ => false,
         };
         match graph.node(formula) {
-            Node::Unary(Unary::Neg, inner) if is_off(inner) => return truth,
+            FormulaNode::Unary(Unary::Neg, inner) if is_off(inner) => return truth,
             _ if is_off(formula) => return truth,
             _ => {}
         }
@@ -208,7 +208,7 @@ impl Reader<'_> {
         let graph = &mut self.system.graph;
         // What rounding makes of a difference is 0.
         let parts = match graph.node(formula) {
-            Node::Binary(Binary::Sub, a, b) => [a, b],
+            FormulaNode::Binary(Binary::Sub, a, b) => [a, b],
             _ => [formula, formula],
         };
         let [a, b] = parts.map(|part| graph.unary(Unary::Abs, part));

@@ -7,7 +7,7 @@ use stickslip_solver::Direction;
 
 use super::formula::{is_function, name_of};
 use super::reader::RESERVED;
-use crate::graph::{Binary, Formula, Graph, Node, Unary, Variable};
+use crate::graph::{Binary, Formula, FormulaNode, Graph, Unary, Variable};
 use crate::system::{Component, Mode, Next, Rule, System, Trigger};
 
 /// Formulas that are nested deeper get a name.
@@ -132,7 +132,7 @@ impl<'a> Printer<'a> {
         for index in (0..needed.len()).filter(|&index| needed[index]) {
             let node = graph.nodes()[index];
             let mut printed = self.node(node);
-            let leaf = matches!(node, Node::Constant(_) | Node::Variable(_));
+            let leaf = matches!(node, FormulaNode::Constant(_) | FormulaNode::Variable(_));
             let shared = uses[index] > 1 && printed.text.chars().count() > LONGEST;
             let name = names.remove(&index);
             if !leaf && (name.is_some() || shared || printed.depth > DEEPEST) {
@@ -166,33 +166,35 @@ impl<'a> Printer<'a> {
         self.printed[formula.index()].as_ref().expect("operands come before what needs them")
     }
 
-    fn node(&self, node: Node) -> Printed {
+    fn node(&self, node: FormulaNode) -> Printed {
         let depth = node.operands().map(|it| self.of(it).depth + 1).max().unwrap_or(0);
         let (text, bond) = match node {
-            Node::Constant(bits) => return constant(f64::from_bits(bits)),
-            Node::Variable(Variable::Time) => return Printed::name("t"),
-            Node::Variable(Variable::Component(index)) => {
+            FormulaNode::Constant(bits) => return constant(f64::from_bits(bits)),
+            FormulaNode::Variable(Variable::Time) => return Printed::name("t"),
+            FormulaNode::Variable(Variable::Component(index)) => {
                 return Printed::name(&self.system.components[index as usize].name);
             }
-            Node::Variable(Variable::Parameter(index)) => {
+            FormulaNode::Variable(Variable::Parameter(index)) => {
                 return Printed::name(&self.system.parameters[index as usize].name);
             }
-            Node::Unary(Unary::Neg, a) => {
+            FormulaNode::Unary(Unary::Neg, a) => {
                 (format!("-{}", self.of(a).within(Bond::Power)), Bond::Sign)
             }
-            Node::Unary(Unary::Square, a) => {
+            FormulaNode::Unary(Unary::Square, a) => {
                 (format!("{}^2", self.of(a).within(Bond::Name)), Bond::Power)
             }
-            Node::Unary(function, a) => {
+            FormulaNode::Unary(function, a) => {
                 (format!("{}({})", name_of(function), self.of(a).text), Bond::Name)
             }
-            Node::Binary(function, a, b) => self.binary(function, a, b),
-            Node::Power(a, n) => (format!("{}^{n}", self.of(a).within(Bond::Name)), Bond::Power),
-            Node::RealPower(a, n) => {
+            FormulaNode::Binary(function, a, b) => self.binary(function, a, b),
+            FormulaNode::Power(a, n) => {
+                (format!("{}^{n}", self.of(a).within(Bond::Name)), Bond::Power)
+            }
+            FormulaNode::RealPower(a, n) => {
                 let n = constant(f64::from_bits(n)).text;
                 (format!("{}^{n}", self.of(a).within(Bond::Name)), Bond::Power)
             }
-            Node::Select(condition, yes, no) => {
+            FormulaNode::Select(condition, yes, no) => {
                 let [condition, yes, no] = [condition, yes, no].map(|it| self.of(it));
                 let condition = condition.within(Bond::Sum);
                 let text = format!("if {condition} >= 0 then {} else {}", yes.text, no.text);

@@ -6,7 +6,7 @@ use super::formula::{Truth, is_function};
 use super::reader::{RESERVED, Reader, Statement};
 use super::tokens::{Token, tokens};
 use super::{TextError, names};
-use crate::graph::{Binary, Formula, Node, Unary, Variable};
+use crate::graph::{Binary, Formula, FormulaNode, Unary, Variable};
 use crate::system::{Component, Condition, Mode, Parameter, Rule, System};
 
 /// The slopes of all modes together have at most as many entries.
@@ -487,12 +487,12 @@ impl<'a> Reader<'a> {
         let graph = &self.system.graph;
         let is = |formula, number: f64| graph.value(formula) == Some(number);
         match graph.node(formula) {
-            Node::Binary(function, a, b) if function == joint => {
+            FormulaNode::Binary(function, a, b) if function == joint => {
                 self.require(Condition { formula: a, below });
                 self.require(Condition { formula: b, below });
             }
             // What is 0 or above, beside what is negative.
-            Node::Select(formula, yes, no) if below && is(yes, -1.0) && is(no, 1.0) => {
+            FormulaNode::Select(formula, yes, no) if below && is(yes, -1.0) && is(no, 1.0) => {
                 self.require(Condition { formula, below: false });
             }
             _ => self.system.required.push(condition),

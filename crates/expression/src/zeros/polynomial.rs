@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::graph::{Binary, Formula, Graph, Node, Unary};
+use crate::graph::{Binary, Formula, FormulaNode, Graph, Unary};
 
 /// A formula with more terms, or of more nodes, is not looked into.
 const MOST_TERMS: usize = 200;
@@ -43,17 +43,17 @@ impl Polynomial {
             // A node refers to nodes before it, and there are less than 2³².
             let itself = || Self::factor(Formula(u32::try_from(place).unwrap_or(u32::MAX)), false);
             let polynomial = match *node {
-                Node::Constant(bits) => Self::number(f64::from_bits(bits)),
-                Node::Unary(Unary::Neg, a) => of(a)?.times(&Self::number(-1.0))?,
-                Node::Unary(Unary::Square, a) => of(a)?.times(of(a)?)?,
-                Node::Binary(Binary::Add, a, b) => of(a)?.plus(of(b)?, 1.0)?,
-                Node::Binary(Binary::Sub, a, b) => of(a)?.plus(of(b)?, -1.0)?,
-                Node::Binary(Binary::Mul, a, b) => of(a)?.times(of(b)?)?,
-                Node::Binary(Binary::Div, a, b) => match graph.value(b) {
+                FormulaNode::Constant(bits) => Self::number(f64::from_bits(bits)),
+                FormulaNode::Unary(Unary::Neg, a) => of(a)?.times(&Self::number(-1.0))?,
+                FormulaNode::Unary(Unary::Square, a) => of(a)?.times(of(a)?)?,
+                FormulaNode::Binary(Binary::Add, a, b) => of(a)?.plus(of(b)?, 1.0)?,
+                FormulaNode::Binary(Binary::Sub, a, b) => of(a)?.plus(of(b)?, -1.0)?,
+                FormulaNode::Binary(Binary::Mul, a, b) => of(a)?.times(of(b)?)?,
+                FormulaNode::Binary(Binary::Div, a, b) => match graph.value(b) {
                     Some(divisor) => of(a)?.times(&Self::number(1.0 / divisor))?,
                     None => of(a)?.times(&Self::factor(b, true))?,
                 },
-                Node::Power(a, n @ 2..=MOST_DEGREE) => {
+                FormulaNode::Power(a, n @ 2..=MOST_DEGREE) => {
                     let mut power = of(a)?.clone();
                     for _ in 1..n {
                         power = power.times(of(a)?)?;

@@ -2,7 +2,7 @@
 
 use num_dual::Dual64;
 use stickslip_expression::{
-    Binary, Formula, Graph, Inputs, Node, Program, System, Unary, Variable,
+    Binary, Formula, FormulaNode, Graph, Inputs, Program, System, Unary, Variable,
 };
 use stickslip_number::{Enclosure, Interval, Number};
 
@@ -63,15 +63,15 @@ fn values<T: Number>(graph: &Graph, t: T, y: &[T], p: &[T]) -> Vec<T> {
     for node in graph.nodes() {
         let at = |formula: Formula| values[index(graph, formula)];
         values.push(match *node {
-            Node::Constant(bits) => T::from(f64::from_bits(bits)),
-            Node::Variable(Variable::Time) => t,
-            Node::Variable(Variable::Component(i)) => y[i as usize],
-            Node::Variable(Variable::Parameter(i)) => p[i as usize],
-            Node::Unary(function, a) => function.of(at(a)),
-            Node::Binary(function, a, b) => function.of(at(a), at(b)),
-            Node::Power(a, n) => at(a).powi(n),
-            Node::RealPower(a, n) => Node::power_of(at(a), f64::from_bits(n)),
-            Node::Select(a, b, c) => at(a).select(at(b), at(c)),
+            FormulaNode::Constant(bits) => T::from(f64::from_bits(bits)),
+            FormulaNode::Variable(Variable::Time) => t,
+            FormulaNode::Variable(Variable::Component(i)) => y[i as usize],
+            FormulaNode::Variable(Variable::Parameter(i)) => p[i as usize],
+            FormulaNode::Unary(function, a) => function.of(at(a)),
+            FormulaNode::Binary(function, a, b) => function.of(at(a), at(b)),
+            FormulaNode::Power(a, n) => at(a).powi(n),
+            FormulaNode::RealPower(a, n) => FormulaNode::power_of(at(a), f64::from_bits(n)),
+            FormulaNode::Select(a, b, c) => at(a).select(at(b), at(c)),
         });
     }
     values

@@ -6,7 +6,7 @@ use stickslip_expression::{System, SystemFamily};
 use stickslip_solver::Options;
 use stickslip_solver::margin::Place;
 use stickslip_tracer::{
-    Atlas, AtlasOf, AtlasOptions, Family, Itinerary, Point, VerifyOptions, Window,
+    Atlas, AtlasOf, AtlasOptions, Family, Point, Window, hybrid::Itinerary, regions::VerifyOptions,
 };
 
 fn parsed(text: &str) -> System {

@@ -2,7 +2,7 @@
 
 use stickslip_expression::{By, Recording, System, SystemFamily};
 use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
-use stickslip_solver::sliding::{SampledFilippov, Side, TwoFields};
+use stickslip_solver::sliding::{SampledFilippov, SurfaceSide, TwoFields};
 use stickslip_solver::{Dop853, EmbeddedPair, Options, Outcome};
 use stickslip_tracer::{Family, Point};
 
@@ -229,7 +229,7 @@ fn random_fields_slide_as_the_solvers_own_do() {
         for (one, other) in found.events.iter().zip(&switches) {
             assert!((one.s - other.s).abs() < 1e-8, "{case}: {} {}\n{text}", one.s, other.s);
             let slid = system.modes[one.to].name == "main_sliding";
-            assert_eq!(slid, other.to.sides() == [Side::Sliding], "{case}");
+            assert_eq!(slid, other.to.sides() == [SurfaceSide::Sliding], "{case}");
             slides += usize::from(slid);
             crossings += usize::from(!slid);
         }

@@ -4,7 +4,7 @@ use stickslip_expression::{Recording, System, SystemFamily};
 use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
 use stickslip_solver::sliding::{SampledFilippov, SwitchedDynamic};
 use stickslip_solver::{Dop853, EmbeddedPair, Options, RunError};
-use stickslip_tracer::{Family, Itinerary, Point};
+use stickslip_tracer::{Family, Point, hybrid::Itinerary};
 
 /// With f = t·rate, both surfaces hold the state as long as f < 5/2.
 const CROSS: &str = "parameter rate = 1, y0 = 0.75\nstate x = 1.5, y = y0\n\

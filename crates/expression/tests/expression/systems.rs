@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use stickslip_expression::{Runnable, System, SystemFamily};
 use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch};
 use stickslip_solver::{EmbeddedPair, Options};
-use stickslip_tracer::{Family, Itinerary, Point};
+use stickslip_tracer::{Family, Point, hybrid::Itinerary};
 
 fn run(runnable: &Runnable) -> (DynamicRun<usize>, Vec<DynamicSwitch<usize>>) {
     let found = runnable.record(EmbeddedPair::Dop853, runnable.end(), &Options::default());

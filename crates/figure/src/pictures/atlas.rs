@@ -6,7 +6,7 @@ mod closed_forms;
 
 use stickslip_model::text::number;
 use stickslip_plane::atlas::{BoundaryKind, CollisionAtlas, switch_count};
-use stickslip_tracer::{Location, Point};
+use stickslip_tracer::{Point, regions::Location};
 
 use closed_forms::ClosedForms;
 

@@ -4,7 +4,7 @@ use crate::canvas::panel::Scale;
 use crate::canvas::shape::Stroke;
 use crate::canvas::style::{BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION};
 use crate::canvas::svg::Svg;
-use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
+use crate::pictures::chart::{self, ChartAxis, LineChart, Mark, Series, Shape};
 
 /// A branch as it is drawn.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub struct BranchCurve<'a> {
     /// The orbits, in the order of the branch.
     pub points: Vec<BranchPoint>,
     /// The special orbits, in the order of the branch.
-    pub specials: Vec<SpecialPoint<'a>>,
+    pub specials: Vec<SpecialMark<'a>>,
 }
 
 /// An orbit as a point.
@@ -25,12 +25,12 @@ pub struct BranchPoint {
     /// The parameter, and what is drawn over it.
     pub at: [f64; 2],
     /// What it is.
-    pub stretch: Stretch,
+    pub stretch: BranchStretch,
 }
 
 /// A special orbit as a point.
 #[derive(Clone, Copy, Debug)]
-pub struct SpecialPoint<'a> {
+pub struct SpecialMark<'a> {
     /// What it is called.
     pub name: &'a str,
     /// The parameter, and what is drawn over it.
@@ -41,7 +41,7 @@ pub struct SpecialPoint<'a> {
 
 /// Parts of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stretch {
+pub enum BranchStretch {
     /// The system follows the orbits, and returns to them.
     Stable,
     /// The system follows the orbits, and leaves them after a disturbance.
@@ -52,11 +52,11 @@ pub enum Stretch {
     Special,
 }
 
-const STRETCHES: [(Stretch, &str, Stroke); 4] = [
-    (Stretch::Special, "", Stroke::full(BLUE, 2.0)),
-    (Stretch::Virtual, "virtual", Stroke { colour: "#888888", width: 1.4, dashes: "2 3" }),
-    (Stretch::Unstable, "unstable", Stroke { colour: VERMILION, width: 2.0, dashes: "7 3" }),
-    (Stretch::Stable, "stable", Stroke::full(BLUE, 2.4)),
+const STRETCHES: [(BranchStretch, &str, Stroke); 4] = [
+    (BranchStretch::Special, "", Stroke::full(BLUE, 2.0)),
+    (BranchStretch::Virtual, "virtual", Stroke { colour: "#888888", width: 1.4, dashes: "2 3" }),
+    (BranchStretch::Unstable, "unstable", Stroke { colour: VERMILION, width: 2.0, dashes: "7 3" }),
+    (BranchStretch::Stable, "stable", Stroke::full(BLUE, 2.4)),
 ];
 /// Places that are closer, in parts of the picture, are one.
 const ONE: f64 = 1e-6;
@@ -90,13 +90,13 @@ pub fn draw(branch: &BranchCurve<'_>) -> Svg {
         let mark = Some(Mark { shape: SHAPES[index % SHAPES.len()], colour });
         series.push(Series { name, points, line: None, mark });
     }
-    chart::draw(&Chart { title: branch.title, x, y, series })
+    chart::draw(&LineChart { title: branch.title, x, y, series })
 }
 
 /// Names with the places that have them. Those of one place are one name.
-fn marked(specials: &[SpecialPoint<'_>], size: [f64; 2]) -> Vec<(String, Vec<(f64, f64)>)> {
+fn marked(specials: &[SpecialMark<'_>], size: [f64; 2]) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut places: Vec<([f64; 2], Vec<&str>)> = Vec::new();
-    for SpecialPoint { name, at, .. } in specials {
+    for SpecialMark { name, at, .. } in specials {
         let near = |place: &[f64; 2]| (0..2).all(|k| (place[k] - at[k]).abs() <= ONE * size[k]);
         match places.iter_mut().find(|(place, _)| near(place)) {
             Some((_, names)) if names.contains(name) => {}
@@ -131,7 +131,7 @@ fn with_specials(branch: &BranchCurve<'_>) -> Vec<BranchPoint> {
 }
 
 /// The pieces of a branch that are stretches of one sort. Each begins at the last point before it.
-fn runs(points: &[BranchPoint], stretch: Stretch) -> Vec<Vec<(f64, f64)>> {
+fn runs(points: &[BranchPoint], stretch: BranchStretch) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut inside = false;
     for (index, point) in points.iter().enumerate() {

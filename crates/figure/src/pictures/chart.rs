@@ -7,7 +7,7 @@ use crate::canvas::svg::{Anchor, Svg, Words};
 
 /// A chart of some series.
 #[derive(Clone, Debug)]
-pub struct Chart<'a> {
+pub struct LineChart<'a> {
     /// The title of the chart.
     pub title: &'a str,
     /// The lower axis.
@@ -89,7 +89,7 @@ const SIZE: f64 = 3.5;
 const DOT: f64 = 1.0;
 
 /// Draws `chart`.
-pub fn draw(chart: &Chart<'_>) -> Svg {
+pub fn draw(chart: &LineChart<'_>) -> Svg {
     let (x, y) = (&chart.x, &chart.y);
     let named = || {
         let named = chart.series.iter().filter(|series| !series.name.is_empty());

@@ -1,7 +1,9 @@
 //! The picture of an atlas of any family.
 
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Atlas, Itinerary, Location, Names, Point, RunNames, Unresolved};
+use stickslip_tracer::{
+    Atlas, Names, Point, RunNames, hybrid::Itinerary, regions::Location, tracing::Unresolved,
+};
 
 use super::regions;
 use crate::canvas::Legend;

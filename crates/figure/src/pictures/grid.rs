@@ -4,7 +4,7 @@ use stickslip_model::Reduction;
 use stickslip_model::text::number;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Tile};
 
-use super::map::{self, MapAxis, MapPanel, Values};
+use super::map::{self, MapAxis, MapPanel, MapValues};
 use crate::canvas::svg::Svg;
 use crate::error::FigureError;
 
@@ -29,8 +29,8 @@ pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, Fi
     map::draw(
         &title,
         &[
-            panel("tangential restitution ε_t", Values::Restitution(&results.eps_t)),
-            panel("number of switches", Values::Switches(&results.switch_count)),
+            panel("tangential restitution ε_t", MapValues::Restitution(&results.eps_t)),
+            panel("number of switches", MapValues::Switches(&results.switch_count)),
         ],
     )
 }
@@ -40,7 +40,7 @@ pub fn panel<'a>(
     grid: &Grid,
     heading: &'a str,
     (columns, rows): (usize, usize),
-    values: Values<'a>,
+    values: MapValues<'a>,
 ) -> MapPanel<'a> {
     let [horizontal, vertical] = grid.axes().map(name);
     let axis = |name, axis: GridAxis| MapAxis { name, range: (axis.range.low, axis.range.high) };

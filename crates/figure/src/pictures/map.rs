@@ -7,7 +7,7 @@ mod panel;
 mod restitution;
 mod switches;
 
-pub use panel::{MapAxis, MapPanel, Values};
+pub use panel::{MapAxis, MapPanel, MapValues};
 
 use crate::canvas::panel::{LINEAR, Panel};
 use crate::canvas::shape::Rectangle;
@@ -45,8 +45,8 @@ pub fn draw(title: &str, maps: &[MapPanel<'_>]) -> Result<Svg, FigureError> {
         });
         let panel = Panel { frame, x: map.horizontal.range, y: map.vertical.range, scales: LINEAR };
         match map.values {
-            Values::Restitution(values) => restitution::draw(&mut svg, map, &panel, values)?,
-            Values::Switches(values) => switches::draw(&mut svg, map, &panel, values, &counts)?,
+            MapValues::Restitution(values) => restitution::draw(&mut svg, map, &panel, values)?,
+            MapValues::Switches(values) => switches::draw(&mut svg, map, &panel, values, &counts)?,
         }
     }
     Ok(svg)

@@ -1,6 +1,9 @@
 //! What pictures of atlases have in common: marks of vertices, labels of regions, and hints.
 
-use stickslip_tracer::{Point, Side, Stretch, Subdivision, VertexKind};
+use stickslip_tracer::{
+    Point, VertexKind,
+    regions::{CurveSide, OutlinePart, Subdivision},
+};
 
 use crate::canvas::panel::Panel;
 use crate::canvas::shape::{Rectangle, Stroke};
@@ -108,11 +111,11 @@ pub fn hints<Label, Margin>(
             let mut points: Vec<(f64, f64)> = Vec::new();
             for stretch in ring {
                 match stretch {
-                    Stretch::Curve(curve, Side::Left) => points.extend(&polylines[curve]),
-                    Stretch::Curve(curve, Side::Right) => {
+                    OutlinePart::Curve(curve, CurveSide::Left) => points.extend(&polylines[curve]),
+                    OutlinePart::Curve(curve, CurveSide::Right) => {
                         points.extend(polylines[curve].iter().rev());
                     }
-                    Stretch::Window(ends) => points.extend(ends.iter().map(&value)),
+                    OutlinePart::Window(ends) => points.extend(ends.iter().map(&value)),
                 }
             }
             thinned(points.into_iter().map(|point| panel.place(point)))

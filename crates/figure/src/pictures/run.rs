@@ -8,7 +8,7 @@ use crate::canvas::svg::{Anchor, Svg, Words};
 
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
-pub struct Run<'a> {
+pub struct RunPicture<'a> {
     /// The title of the picture.
     pub title: &'a str,
     /// The name of the independent variable.
@@ -35,7 +35,7 @@ const KEY: f64 = 24.0;
 const MOST_EVENTS: usize = 2000;
 
 /// Draws `run`.
-pub fn draw(run: &Run<'_>) -> Svg {
+pub fn draw(run: &RunPicture<'_>) -> Svg {
     let height = match run.names.len() {
         0 | 1 => 320.0,
         2 => 210.0,
@@ -61,7 +61,7 @@ pub fn draw(run: &Run<'_>) -> Svg {
     svg
 }
 
-fn panel(svg: &mut Svg, run: &Run<'_>, component: usize, frame: Rectangle) -> Panel {
+fn panel(svg: &mut Svg, run: &RunPicture<'_>, component: usize, frame: Rectangle) -> Panel {
     let points = || run.curve.iter().map(|(s, state)| (*s, state[component]));
     let finite = points().filter(|(_, y)| y.is_finite());
     let (low, high) = finite
@@ -108,7 +108,7 @@ fn widened((low, high): (f64, f64), part: f64) -> (f64, f64) {
     (low - room, high + room)
 }
 
-fn legend(svg: &mut Svg, run: &Run<'_>) {
+fn legend(svg: &mut Svg, run: &RunPicture<'_>) {
     let mut legend = Legend::new((LEFT, 50.0));
     let mut seen: Vec<usize> = run.stays.iter().map(|(mode, ..)| *mode).collect();
     seen.sort_unstable();

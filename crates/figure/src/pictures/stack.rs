@@ -4,7 +4,11 @@ use stickslip_model::text::number;
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_plane::stack::{DampingLayer, DampingStack};
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Change, Effect, Itinerary, Layer, Names, Point, RunNames, Stack};
+use stickslip_tracer::{
+    Names, Point, RunNames,
+    hybrid::Itinerary,
+    stack::{Change, Effect, Layer, Stack},
+};
 
 use super::atlas::boundaries;
 use crate::canvas::Legend;

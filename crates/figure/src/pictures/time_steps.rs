@@ -4,7 +4,7 @@ use stickslip_practice::time_steps::{
     Status, SteppedQuantity, TimeStepErrors, TimeStepRow, TimeSteps,
 };
 
-use super::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
+use super::chart::{self, ChartAxis, LineChart, Mark, Series, Shape};
 use crate::canvas::panel::Scale;
 use crate::canvas::shape::Stroke;
 use crate::canvas::style::{BLUE, GREEN, INK, VERMILION};
@@ -84,7 +84,7 @@ fn chart(result: &TimeSteps, series: Vec<Series>) -> Svg {
         result.phases,
         result.scheme.name()
     );
-    chart::draw(&Chart { title: &title, x, y, series })
+    chart::draw(&LineChart { title: &title, x, y, series })
 }
 
 /// The ends of an axis, with room for whole marks. Where there is nothing to draw, any range does.

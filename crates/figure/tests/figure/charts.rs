@@ -1,13 +1,13 @@
 use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
-use stickslip_figure::pictures::chart::{self, Chart, Series};
+use stickslip_figure::pictures::chart::{self, LineChart, Series};
 
 use crate::examples::{axis, powers, series};
 use crate::svg::texts;
 
 fn chart(series: Vec<Series>) -> Svg {
     let (x, y) = (axis((0.0, 1.0), Scale::Linear), axis((0.0, 1.0), Scale::Linear));
-    chart::draw(&Chart { title: "a chart", x, y, series })
+    chart::draw(&LineChart { title: "a chart", x, y, series })
 }
 
 #[test]

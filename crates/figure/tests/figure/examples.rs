@@ -6,9 +6,9 @@ use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::canvas::style::FRAME;
-use stickslip_figure::pictures::chart::{Chart, ChartAxis, Mark, Series, Shape};
+use stickslip_figure::pictures::chart::{ChartAxis, LineChart, Mark, Series, Shape};
 use stickslip_figure::pictures::gallery::Exhibit;
-use stickslip_figure::pictures::map::{MapAxis, MapPanel, Values};
+use stickslip_figure::pictures::map::{MapAxis, MapPanel, MapValues};
 use stickslip_figure::pictures::{self, atlas, chart, collision, gallery, grid, map};
 use stickslip_model::history::History;
 use stickslip_model::{Collider, Collision, Contact, Engine};
@@ -51,7 +51,7 @@ pub fn grid(kappa: (f64, f64), psi: (f64, f64), engine: Engine) -> Svg {
 }
 
 /// A panel of 4 × 3 cells with `values`.
-pub fn panel(values: Values<'_>) -> MapPanel<'_> {
+pub fn panel(values: MapValues<'_>) -> MapPanel<'_> {
     MapPanel {
         heading: "tangential restitution ε_t",
         horizontal: MapAxis { name: "normal velocity g_n in m/s", range: (0.0, 2.0) },
@@ -70,7 +70,7 @@ pub fn restitution(largest: f64) -> Svg {
     (values[3], values[7], values[8]) = (largest, -largest, f64::NAN);
     let names = ["a", "b", "c", "n'"];
     let points = names.into_iter().enumerate().map(|(i, name)| (name, (1.8, 0.02 * i as f64)));
-    let panel = MapPanel { points: points.collect(), ..panel(Values::Restitution(&values)) };
+    let panel = MapPanel { points: points.collect(), ..panel(MapValues::Restitution(&values)) };
     map::draw("two panels", &[panel.clone(), panel]).unwrap()
 }
 
@@ -126,7 +126,7 @@ pub fn powers(x: (f64, f64), y: (f64, f64)) -> Svg {
         let mark = Some(Mark { shape, colour: "#009E73" });
         Series { mark, ..series(&format!("κ^{power} over √κ: {power}.000 ± 0.001"), &points) }
     });
-    chart::draw(&Chart {
+    chart::draw(&LineChart {
         title: "Powers of κ",
         x: axis(x, Scale::Logarithmic),
         y: axis(y, Scale::Logarithmic),
@@ -175,7 +175,7 @@ fn drawn() -> Vec<(String, Svg)> {
     ] {
         drawn.push((format!("powers over {x:?}"), powers(x, y)));
     }
-    let linear = Chart {
+    let linear = LineChart {
         title: "F(phase)",
         x: axis((-1.0, 0.0), Scale::Linear),
         y: axis((0.0, 5e6), Scale::Linear),

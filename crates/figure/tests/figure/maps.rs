@@ -1,5 +1,5 @@
 use stickslip_figure::FigureError;
-use stickslip_figure::pictures::map::{self, MapPanel, Values};
+use stickslip_figure::pictures::map::{self, MapPanel, MapValues};
 use stickslip_model::Engine;
 
 use crate::examples::{grid, panel, restitution};
@@ -7,7 +7,7 @@ use crate::svg::{texts, texts_in};
 
 /// The labels of the scale of a map with `values`, from the lower end to the upper one.
 fn scale(values: &[f64; 12]) -> Vec<String> {
-    texts_in(&map::draw("a map", &[panel(Values::Restitution(values))]).unwrap(), "scale")
+    texts_in(&map::draw("a map", &[panel(MapValues::Restitution(values))]).unwrap(), "scale")
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn regions_of_a_grid_are_labelled_with_the_numbers_in_the_key() {
 fn a_map_without_cells_or_with_other_values_is_refused() {
     for (columns, rows, values) in [(0, 3, 0), (4, 0, 0), (4, 3, 11), (usize::MAX, 2, 12)] {
         let all = [0.5; 12];
-        let panel = MapPanel { columns, rows, ..panel(Values::Restitution(&all[..values])) };
+        let panel = MapPanel { columns, rows, ..panel(MapValues::Restitution(&all[..values])) };
         let error = map::draw("a map", &[panel]).unwrap_err();
         let FigureError::Cells { columns: c, rows: r, values: v } = error else {
             panic!("{error}")
@@ -66,7 +66,7 @@ fn a_map_without_cells_or_with_other_values_is_refused() {
         assert_eq!((c, r, v), (columns, rows, values));
     }
     let counts = [2; 12];
-    let panel = MapPanel { columns: 5, ..panel(Values::Switches(&counts)) };
+    let panel = MapPanel { columns: 5, ..panel(MapValues::Switches(&counts)) };
     let error = map::draw("a map", &[panel]).unwrap_err().to_string();
     assert!(error.starts_with("a map of 5 × 3 cells with 12 values; expected"), "{error}");
 }

@@ -4,8 +4,8 @@ use roxmltree::Document;
 use stickslip_figure::canvas::panel::{Edge, Panel, Scale};
 use stickslip_figure::canvas::shape::{Rectangle, Stroke};
 use stickslip_figure::canvas::svg::{Anchor, Words};
-use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
-use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
+use stickslip_figure::pictures::chart::{self, ChartAxis, LineChart, Mark, Series, Shape};
+use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, MapValues};
 use stickslip_figure::{FigureError, Svg, png};
 
 const NAN: f64 = f64::NAN;
@@ -60,7 +60,7 @@ fn axes_with_any_range_are_drawn_or_left_empty() {
             let mark = Some(Mark { shape: Shape::Cross, colour: "#000000" });
             let series =
                 Series { name: "all".to_owned(), points: POINTS.into(), line: Some(LINE), mark };
-            let chart = Chart { title: "", x: axis, y: axis, series: vec![series] };
+            let chart = LineChart { title: "", x: axis, y: axis, series: vec![series] };
             assert_sound(&chart::draw(&chart), &case);
         }
     }
@@ -108,7 +108,7 @@ fn a_map_needs_axes() {
             vertical: axis(range),
             columns: 1,
             rows: 1,
-            values: Values::Restitution(&[0.5]),
+            values: MapValues::Restitution(&[0.5]),
             lines: Vec::new(),
             points: Vec::new(),
         };

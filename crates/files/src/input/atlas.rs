@@ -8,7 +8,7 @@ use stickslip_orbits::{FollowedOrbits, OrbitBoundary, OrbitNames};
 use stickslip_plane::atlas::{AtlasDocument, CollisionAtlas, SCHEMA};
 use stickslip_plane::sealed;
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Atlas, Itinerary, RunNames};
+use stickslip_tracer::{Atlas, RunNames, hybrid::Itinerary};
 
 use super::{json, source};
 use crate::error::FileError;
@@ -51,8 +51,8 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     let text = source::read(path, MOST_BYTES)?;
     let Schema { schema } = json::parse(&text).map_err(unusable)?;
     sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
-    if schema == stickslip_tracer::SCHEMA {
-        let document: stickslip_tracer::Document<Itinerary, Margin> =
+    if schema == stickslip_tracer::document::SCHEMA {
+        let document: stickslip_tracer::document::AtlasDocument<Itinerary, Margin> =
             json::parse(&text).map_err(unusable)?;
         let names = document.names();
         let atlas = document.atlas().map_err(|error| unusable(error.to_string()))?;
@@ -67,7 +67,7 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
         return Err(unusable(format!(
             "schema is {schema:?}; expected {SCHEMA:?} or {:?}, which stickslip trace writes, or \
              {REGIONS:?} of stickslip regions",
-            stickslip_tracer::SCHEMA
+            stickslip_tracer::document::SCHEMA
         )));
     }
     let document: AtlasDocument = json::parse(&text).map_err(unusable)?;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use stickslip_model::spheres::quantity;
-use stickslip_model::spheres::quantity::Quantity;
+use stickslip_model::spheres::quantity::PhysicalQuantity;
 use stickslip_model::{Contact, Law};
 
 use crate::input::number::{self, SYNTAX};
@@ -97,7 +97,7 @@ impl Parameter {
 ///
 /// # Errors
 /// The text is not a number, or out of the quantity's range.
-pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, String> {
+pub fn quantity(quantity: &PhysicalQuantity, text: &str) -> Result<f64, String> {
     checked(text, quantity.expected, |value| quantity.check(value).is_ok())
 }
 

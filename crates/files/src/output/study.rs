@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 use stickslip_figure::pictures::studies::Picture;
-use stickslip_studies::{Cell, Study, Table};
+use stickslip_studies::{Cell, Study, StudyTable};
 
 use super::file::write;
 use crate::error::FileError;
@@ -47,7 +47,7 @@ fn files(study: &Study, pictures: &[Picture]) -> Value {
 }
 
 /// A table as a CSV file.
-fn csv(table: &Table) -> Vec<u8> {
+fn csv(table: &StudyTable) -> Vec<u8> {
     let header = table.columns.iter().map(|column| column.name.to_owned()).collect();
     let rows = table.rows.iter().map(|row| row.iter().map(Cell::text).collect());
     let mut writer = csv::Writer::from_writer(Vec::new());

@@ -4,7 +4,7 @@ use std::io;
 
 use rawzip::ZipArchiveWriter;
 use stickslip_model::Law;
-use stickslip_practice::tables::{ACROSS, ALONG, Table, TableWindow};
+use stickslip_practice::tables::{ACROSS, ALONG, RestitutionTable, TableWindow};
 
 use super::npz::{array, number, plain, text};
 
@@ -13,7 +13,7 @@ use super::npz::{array, number, plain, text};
 ///
 /// # Errors
 /// The archive cannot be made.
-pub fn archive(table: &Table, program: &str) -> io::Result<Vec<u8>> {
+pub fn archive(table: &RestitutionTable, program: &str) -> io::Result<Vec<u8>> {
     let arrays = table.arrays();
     let mut bytes = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut bytes);

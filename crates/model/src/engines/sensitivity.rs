@@ -12,10 +12,10 @@ use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{STATE, T, U, V, W};
 use stickslip_contact::regularized::derivatives::PARAMETERS;
-use stickslip_contact::regularized::equations::Parameter;
+use stickslip_contact::regularized::equations::ContactParameter;
 use stickslip_contact::{Contact, Regime};
 use stickslip_solver::method::Columns;
-use stickslip_solver::sensitivity::{Change, SwitchSensitivity, sensitivities_with};
+use stickslip_solver::sensitivity::{SwitchSensitivity, Variation, sensitivities_with};
 use stickslip_solver::{Outcome, State};
 
 use super::error::CollisionError;
@@ -84,7 +84,7 @@ impl Collider {
         let system = Regularized::new(contact);
         let mut start = Columns::<STATE, VALUES>::zeros();
         start.set_column(0, &system.start());
-        for (j, by) in Parameter::ALL.into_iter().enumerate() {
+        for (j, by) in ContactParameter::ALL.into_iter().enumerate() {
             let by = State::from(system.equations.start_by(contact.psi(), by));
             start.set_column(1 + j, &by);
         }
@@ -156,7 +156,7 @@ fn compression_rate(
     let mut rate = [system.compression_rate(&state); VALUES];
     for (index, part) in rate[1..].iter_mut().enumerate() {
         let y = end.state.column(1 + index).into_owned();
-        let change = Change { s: 0.0, parameter: Some(index), y };
+        let change = Variation { s: 0.0, parameter: Some(index), y };
         let (equations, y) = system.along(&state, &change);
         *part = equations.compression_rate::<true>(y[U], y[V]).eps;
     }

@@ -3,7 +3,7 @@
 use stickslip_contact::{Damping, Friction, InvalidValue, Law, Normal, Tangential};
 
 use super::bodies::Surface;
-use super::quantity::{self, Quantity};
+use super::quantity::{self, PhysicalQuantity};
 use super::units::Units;
 use crate::engines::error::CollisionError;
 use crate::restitution;
@@ -220,7 +220,7 @@ impl Dashpot {
             (&quantity::HARDENING, c.hardening_per_m, law.damping == Damping::Hardening),
             (&quantity::NORMAL_RESTITUTION, c.e_n, damped),
         ];
-        let mut given: Option<(&Quantity, f64)> = None;
+        let mut given: Option<(&PhysicalQuantity, f64)> = None;
         for (quantity, value, has) in all {
             let Some(value) = value else { continue };
             let of_one = [quantity::NORMAL_RESTITUTION.name, quantity::UNLOADING_RATIO.name];
@@ -310,17 +310,17 @@ fn missing(name: &'static str, expected: &str) -> InvalidValue {
     InvalidValue::phrase(name, "is missing", format!("in this law: {expected}"))
 }
 
-fn checked(quantity: &Quantity, value: Option<f64>) -> Result<Option<f64>, InvalidValue> {
+fn checked(quantity: &PhysicalQuantity, value: Option<f64>) -> Result<Option<f64>, InvalidValue> {
     value.map(|value| quantity.check(value)).transpose()
 }
 
-fn required(quantity: &Quantity, value: Option<f64>) -> Result<f64, InvalidValue> {
-    let Quantity { name, expected, .. } = *quantity;
+fn required(quantity: &PhysicalQuantity, value: Option<f64>) -> Result<f64, InvalidValue> {
+    let PhysicalQuantity { name, expected, .. } = *quantity;
     checked(quantity, value)?.ok_or_else(|| missing(name, expected))
 }
 
 /// Refuses a constant that the law does not have.
-fn unused(quantity: &Quantity, value: Option<f64>) -> Result<(), InvalidValue> {
+fn unused(quantity: &PhysicalQuantity, value: Option<f64>) -> Result<(), InvalidValue> {
     match value {
         Some(value) => {
             let phrase = format!("= {value} has no meaning in this law");

@@ -9,7 +9,7 @@ use super::observed::Observed;
 
 /// Two bodies after their collision.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct ImpactOutcome {
     /// Motions after the contact. Positions are those at impact, and a wall keeps its motion.
     pub motions: [Motion; 2],
     /// Impulse on the first body in N s; the second body receives the opposite one.
@@ -92,7 +92,7 @@ impl EnergyAccount {
 
 impl Encounter {
     /// The outcome, given the `collision` of [`Self::contact`] from any engine.
-    pub fn outcome(&self, collision: &Collision) -> Outcome {
+    pub fn outcome(&self, collision: &Collision) -> ImpactOutcome {
         let impact = &self.impact;
         let pair = &impact.pair;
         let [m, alpha] = [pair.effective_mass_kg, pair.alpha];
@@ -126,7 +126,7 @@ impl Encounter {
         };
         let switches =
             if self.tangent.is_some() { self.switches(collision) } else { SmallVec::new() };
-        Outcome {
+        ImpactOutcome {
             motions,
             impulse_n_s: impulse,
             eps_n: collision.eps_n,

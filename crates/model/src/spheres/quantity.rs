@@ -15,7 +15,7 @@ use stickslip_contact::InvalidValue;
 /// # Ok::<(), stickslip_model::InvalidValue>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Quantity {
+pub struct PhysicalQuantity {
     /// The name of the field in structs and files.
     pub name: &'static str,
     /// The range and the unit in words.
@@ -24,87 +24,93 @@ pub struct Quantity {
 }
 
 /// Radius of a sphere.
-pub const RADIUS: Quantity = positive("radius_m", "a finite number above 0, in m");
+pub const RADIUS: PhysicalQuantity = positive("radius_m", "a finite number above 0, in m");
 /// Mass of a sphere.
-pub const MASS: Quantity = positive("mass_kg", "a finite number above 0, in kg");
+pub const MASS: PhysicalQuantity = positive("mass_kg", "a finite number above 0, in kg");
 /// Moment of inertia of a sphere about its centre.
-pub const MOMENT_OF_INERTIA: Quantity =
+pub const MOMENT_OF_INERTIA: PhysicalQuantity =
     positive("moment_of_inertia_kg_m2", "a finite number above 0, in kg m²");
 /// Young's modulus Y.
-pub const YOUNG_MODULUS: Quantity = positive("young_modulus_pa", "a finite number above 0, in Pa");
+pub const YOUNG_MODULUS: PhysicalQuantity =
+    positive("young_modulus_pa", "a finite number above 0, in Pa");
 /// Poisson's ratio ν.
-pub const POISSON_RATIO: Quantity = Quantity {
+pub const POISSON_RATIO: PhysicalQuantity = PhysicalQuantity {
     name: "poisson_ratio",
     expected: "a number above -1, at most 0.5, without unit",
     range: Range::Poisson,
 };
 /// Density.
-pub const DENSITY: Quantity = positive("density_kg_per_m3", "a finite number above 0, in kg/m³");
+pub const DENSITY: PhysicalQuantity =
+    positive("density_kg_per_m3", "a finite number above 0, in kg/m³");
 /// Coulomb's coefficient of friction μ.
-pub const FRICTION: Quantity =
+pub const FRICTION: PhysicalQuantity =
     not_negative("friction", "a finite number, 0 or above, without unit");
 /// Dynamic coefficient of friction μ_d, at most the static one.
-pub const DYNAMIC_FRICTION: Quantity = not_negative(
+pub const DYNAMIC_FRICTION: PhysicalQuantity = not_negative(
     "dynamic_friction",
     "a finite number, 0 or above and at most friction, without unit",
 );
 /// Decay β of friction from μ_s to μ_d, as e^(−β |g|).
-pub const FRICTION_DECAY: Quantity =
+pub const FRICTION_DECAY: PhysicalQuantity =
     not_negative("friction_decay_s_per_m", "a finite number, 0 or above, in s/m");
 /// Tangential inertia α of two bodies.
-pub const INERTIA: Quantity =
-    Quantity { name: "alpha", expected: "a number above 0, at most 1", range: Range::Share };
+pub const INERTIA: PhysicalQuantity = PhysicalQuantity {
+    name: "alpha",
+    expected: "a number above 0, at most 1",
+    range: Range::Share,
+};
 /// Stiffness k_t of the tangential spring.
-pub const TANGENTIAL_STIFFNESS: Quantity =
+pub const TANGENTIAL_STIFFNESS: PhysicalQuantity =
     not_negative("tangential_stiffness_kg_per_s2", "a finite number, 0 or above, in kg/s²");
 /// Damping time A of the normal force.
-pub const DAMPING_TIME: Quantity =
+pub const DAMPING_TIME: PhysicalQuantity =
     not_negative("damping_time_s", "a finite number, 0 or above, in s");
 /// Stiffness k of a linear normal force.
-pub const NORMAL_STIFFNESS: Quantity =
+pub const NORMAL_STIFFNESS: PhysicalQuantity =
     positive("normal_stiffness_kg_per_s2", "a finite number above 0, in kg/s²");
 /// Elastic constant ρ of Hertz' force.
-pub const HERTZ_STIFFNESS: Quantity =
+pub const HERTZ_STIFFNESS: PhysicalQuantity =
     positive("hertz_stiffness_kg_per_s2_m0_5", "a finite number above 0, in kg/(s² √m)");
 /// Constant K of Mindlin's tangential stiffness K √ξ.
-pub const MINDLIN_STIFFNESS: Quantity =
+pub const MINDLIN_STIFFNESS: PhysicalQuantity =
     not_negative("mindlin_stiffness_kg_per_s2_m0_5", "a finite number, 0 or above, in kg/(s² √m)");
 /// Ratio k₂/k₁ of the stiffnesses of a hysteretic normal force.
-pub const UNLOADING_RATIO: Quantity = Quantity {
+pub const UNLOADING_RATIO: PhysicalQuantity = PhysicalQuantity {
     name: "unloading_stiffness_ratio",
     expected: "a finite number, 1 or above, without unit",
     range: Range::AtLeastOne,
 };
 /// Growth of the unloading stiffness with the greatest overlap, k₂/k₁ − 1 over this overlap.
-pub const HARDENING: Quantity =
+pub const HARDENING: PhysicalQuantity =
     not_negative("hardening_per_m", "a finite number, 0 or above, in 1/m");
 /// Damping γ of the normal force.
-pub const DAMPING_COEFFICIENT: Quantity =
+pub const DAMPING_COEFFICIENT: PhysicalQuantity =
     not_negative("damping_coefficient", "a finite number, 0 or above, in kg/(s mᵉ)");
 /// Damping of the normal force without unit.
-pub const DAMPING_RATIO: Quantity =
+pub const DAMPING_RATIO: PhysicalQuantity =
     not_negative("damping_ratio", "a finite number, 0 or above, without unit");
 /// Damping ratio ζ of the normal force, as particle codes define it.
-pub const CRITICAL_DAMPING_RATIO: Quantity =
+pub const CRITICAL_DAMPING_RATIO: PhysicalQuantity =
     not_negative("critical_damping_ratio", "a finite number, 0 or above, without unit");
 /// Coefficient of normal restitution.
-pub const NORMAL_RESTITUTION: Quantity =
-    Quantity { name: "e_n", expected: "a number above 0, at most 1", range: Range::Share };
+pub const NORMAL_RESTITUTION: PhysicalQuantity =
+    PhysicalQuantity { name: "e_n", expected: "a number above 0, at most 1", range: Range::Share };
 /// Normal velocity to which a coefficient of normal restitution belongs.
-pub const RESTITUTION_VELOCITY: Quantity =
+pub const RESTITUTION_VELOCITY: PhysicalQuantity =
     positive("e_n_at_m_per_s", "a finite number above 0, in m/s");
 /// Ratio of tangential and normal damping.
-pub const TANGENTIAL_DAMPING_RATIO: Quantity =
+pub const TANGENTIAL_DAMPING_RATIO: PhysicalQuantity =
     not_negative("tangential_damping_ratio", "a finite number, 0 or above, without unit");
 /// Normal velocity g_n of the surfaces at the contact.
-pub const NORMAL_VELOCITY: Quantity = positive("normal_m_per_s", "a finite number above 0, in m/s");
+pub const NORMAL_VELOCITY: PhysicalQuantity =
+    positive("normal_m_per_s", "a finite number above 0, in m/s");
 /// Tangential velocity g_t of the surfaces at the contact; 0 is a central impact.
-pub const TANGENTIAL_VELOCITY: Quantity =
+pub const TANGENTIAL_VELOCITY: PhysicalQuantity =
     not_negative("tangential_m_per_s", "a finite number, 0 or above, in m/s");
 /// Velocity of the surfaces at the contact.
-pub const SPEED: Quantity = positive("speed_m_per_s", "a finite number above 0, in m/s");
+pub const SPEED: PhysicalQuantity = positive("speed_m_per_s", "a finite number above 0, in m/s");
 /// Angle between the velocity of the surfaces and the normal.
-pub const ANGLE: Quantity = Quantity {
+pub const ANGLE: PhysicalQuantity = PhysicalQuantity {
     name: "angle_rad",
     expected: "a number, 0 or above and below π/2, in rad",
     range: Range::Acute,
@@ -120,7 +126,7 @@ enum Range {
     Acute,
 }
 
-impl Quantity {
+impl PhysicalQuantity {
     /// `value`, if it is in the range.
     ///
     /// # Errors
@@ -139,10 +145,10 @@ impl Quantity {
     }
 }
 
-const fn positive(name: &'static str, expected: &'static str) -> Quantity {
-    Quantity { name, expected, range: Range::Positive }
+const fn positive(name: &'static str, expected: &'static str) -> PhysicalQuantity {
+    PhysicalQuantity { name, expected, range: Range::Positive }
 }
 
-const fn not_negative(name: &'static str, expected: &'static str) -> Quantity {
-    Quantity { name, expected, range: Range::NotNegative }
+const fn not_negative(name: &'static str, expected: &'static str) -> PhysicalQuantity {
+    PhysicalQuantity { name, expected, range: Range::NotNegative }
 }

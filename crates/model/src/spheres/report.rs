@@ -1,9 +1,9 @@
 //! The report on one impact: everything that a program prints of it.
 
-use stickslip_contact::{Collision, Damping, End, Normal, NotFinite};
+use stickslip_contact::{Collision, ContactEnd, Damping, Normal, NotFinite};
 
 use super::encounter::{Encounter, Motion};
-use super::outcome::Outcome;
+use super::outcome::ImpactOutcome;
 use crate::limits::{coulomb, normal};
 
 /// One impact: the bodies, their collision in scaled variables, its outcome in SI units, and what
@@ -44,7 +44,7 @@ pub struct ImpactReport {
     /// [`Self::psi`], [`Self::reversals`] and [`Self::itinerary`] describe the impact itself.
     pub collision: Collision,
     /// The bodies after the contact.
-    pub outcome: Outcome,
+    pub outcome: ImpactOutcome,
     /// The same impact by simpler laws.
     pub comparison: Comparison,
 }
@@ -138,16 +138,16 @@ impl ImpactReport {
 }
 
 impl Comparison {
-    fn new(encounter: &Encounter, outcome: &Outcome) -> Self {
+    fn new(encounter: &Encounter, outcome: &ImpactOutcome) -> Self {
         let (impact, contact) = (&encounter.impact, encounter.contact());
         let coulomb = |_| coulomb::restitution(contact.psi(), outcome.eps_n);
         let (law, damped) = (contact.law(), contact.damping() > 0.0);
         let hertz = law.normal == Normal::Hertz;
-        let viscoelastic = law.damping == Damping::Viscoelastic && law.end == End::Force;
+        let viscoelastic = law.damping == Damping::Viscoelastic && law.end == ContactEnd::Force;
         let of_paper = hertz && (viscoelastic || !damped);
         let viscous = damped && law.damping.is_viscous();
         let steady = law.friction.is_constant();
-        let attracts = viscous && law.end == End::Overlap && !law.limit_damping;
+        let attracts = viscous && law.end == ContactEnd::Overlap && !law.limit_damping;
         Self {
             eps_n_series: of_paper.then(|| normal::series(contact.damping())),
             eps_n_pade: of_paper.then(|| normal::pade(contact.damping())),

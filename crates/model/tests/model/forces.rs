@@ -5,7 +5,7 @@ use stickslip_model::spheres::{
     Body, BodyPair, Constants, Elasticity, Forces, Material, Sphere, Surface,
 };
 use stickslip_model::{
-    Collider, Contact, Damping, End, Law, Normal, Tangential, presets, restitution,
+    Collider, Contact, ContactEnd, Damping, Law, Normal, Tangential, presets, restitution,
 };
 
 use crate::common::file;
@@ -224,7 +224,8 @@ fn restitution_is_an_input() {
 fn restitution_in_closed_form_is_that_of_a_run() {
     for name in ["gran/hooke/history", "granular/hertz/tsuji/mindlin"] {
         let law = presets::find(name).unwrap().law;
-        for law in [law, Law { limit_damping: true, ..law }, Law { end: End::Force, ..law }] {
+        for law in [law, Law { limit_damping: true, ..law }, Law { end: ContactEnd::Force, ..law }]
+        {
             for damping in [1e-3, 0.05, 0.4, 1.3, 1.413, 1.415, 1.9, 2.0, 2.1, 7.0] {
                 if damping >= law.endless_from() {
                     continue;

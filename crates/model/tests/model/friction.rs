@@ -4,8 +4,8 @@ use stickslip_model::spheres::{
     Body, BodyPair, Constants, Encounter, Forces, ImpactReport, Material, Sphere,
 };
 use stickslip_model::{
-    CollisionError, Contact, CoulombTest, Damping, End, Engine, Friction, HistoryOf, Law, Normal,
-    Regime, Tangential, presets,
+    CollisionError, Contact, ContactEnd, CoulombTest, Damping, Engine, Friction, HistoryOf, Law,
+    Normal, Regime, Tangential, presets,
 };
 
 use crate::common::file;
@@ -36,7 +36,7 @@ fn decaying_friction_is_that_of_another_program() {
             history: HistoryOf::Force,
             rescaled: mindlin,
             limit_damping: true,
-            end: End::Overlap,
+            end: ContactEnd::Overlap,
             friction: Friction { dynamic: number("dynamic"), decay: number("decay") },
             ..Law::PAPER
         };

@@ -3,7 +3,7 @@
 use stickslip_model::spheres::{Body, Encounter, ImpactReport, Sphere};
 use stickslip_model::spheres::{BodyPair, Constants, Forces, Material, Surface};
 use stickslip_model::{
-    Contact, Damping, End, Engine, HistoryOf, Law, Normal, Tangential, presets, restitution,
+    Contact, ContactEnd, Damping, Engine, HistoryOf, Law, Normal, Tangential, presets, restitution,
 };
 
 use crate::common::file;
@@ -26,7 +26,7 @@ fn hysteretic_contacts_are_those_of_another_program() {
     for case in cases {
         let number = |name: &str| case[name].as_f64().unwrap();
         let normal = if case["normal"] == "hertz" { Normal::Hertz } else { Normal::Linear };
-        let law = Law { end: End::Force, ..hysteretic(normal) };
+        let law = Law { end: ContactEnd::Force, ..hysteretic(normal) };
         let found = collide(contact(number("kappa"), number("psi"), number("damping"), law));
         let expected = [number("eps_t"), number("eps_n"), number("time")];
         let own = [found.eps_t(), found.eps_n, found.contact_time];
@@ -92,7 +92,7 @@ fn hysteretic_contacts_slide_lose_and_last_as_they_must() {
         let loaded = std::f64::consts::FRAC_PI_2 * (1.0 + e_n);
         let left = a / (1.0 + a);
         assert!((found.contact_time - loaded - left / e_n).abs() < 1e-11);
-        let ends = collide(contact(5.0, 4.0, a, Law { end: End::Force, ..law }));
+        let ends = collide(contact(5.0, 4.0, a, Law { end: ContactEnd::Force, ..law }));
         assert!((ends.contact_time - loaded).abs() < 1e-11);
         for found in [found, ends, collide(contact(30.0, 0.6, a, law))] {
             let energy = found.energy;
@@ -110,7 +110,7 @@ fn hysteretic_contacts_slide_lose_and_last_as_they_must() {
 /// The course of a contact that is left with an overlap.
 #[test]
 fn the_course_keeps_the_overlap_that_is_left() {
-    let law = Law { end: End::Force, ..hysteretic(Normal::Linear) };
+    let law = Law { end: ContactEnd::Force, ..hysteretic(Normal::Linear) };
     let history = Engine::Auto.history(contact(20.0, 0.5, 3.0, law)).unwrap();
     let crest = history.at(std::f64::consts::FRAC_PI_2).unwrap();
     assert!((crest.compression - 1.0).abs() < 1e-10 && (crest.normal_force - 1.0).abs() < 1e-10);

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::{Rotation3, Unit};
 use stickslip_model::spheres::encounter::TOUCH;
 use stickslip_model::spheres::{
-    Body, Constants, Elasticity, Encounter, Forces, Material, Motion, Outcome, Sphere, Surface,
-    Vector3, Wall, WallMotion,
+    Body, Constants, Elasticity, Encounter, Forces, ImpactOutcome, Material, Motion, Sphere,
+    Surface, Vector3, Wall, WallMotion,
 };
 use stickslip_model::{Collider, Engine, InvalidValue, presets};
 
@@ -141,7 +141,7 @@ impl Case {
         }
     }
 
-    fn outcome(&self) -> (Encounter, Outcome) {
+    fn outcome(&self) -> (Encounter, ImpactOutcome) {
         let encounter = self.encounter();
         let collision = Collider::default().collide(encounter.contact()).expect("a collision");
         (encounter, encounter.outcome(&collision))
@@ -190,7 +190,7 @@ impl Worst {
 
 /// Difference of the velocity of the surfaces after the contact from ε_n g_n n + ε_t g_t t,
 /// relative to their speeds.
-fn restitution_error(encounter: &Encounter, outcome: &Outcome) -> f64 {
+fn restitution_error(encounter: &Encounter, outcome: &ImpactOutcome) -> f64 {
     let [one, two] = outcome.motions.map(|motion| {
         let lever = encounter.contact_point_m - motion.position_m;
         // The motion of a wall is that of its surface and has no spin.
@@ -283,7 +283,7 @@ fn turned_boosted_and_exchanged(impacts: usize) {
         let scale: f64 = encounter.normal_m_per_s
             + encounter.tangential_m_per_s
             + outcome.motions[1].velocity_m_per_s.norm();
-        let difference = |other: &Outcome, turn: &Rotation3<f64>, boost: Vector3<f64>| {
+        let difference = |other: &ImpactOutcome, turn: &Rotation3<f64>, boost: Vector3<f64>| {
             let motions = outcome.motions.iter().zip(&other.motions);
             let of = |((sphere, _), (ours, theirs)): (&(Sphere, Motion), (&Motion, &Motion))| {
                 let velocity = turn * ours.velocity_m_per_s + boost - theirs.velocity_m_per_s;
@@ -316,7 +316,7 @@ fn turned_boosted_and_exchanged(impacts: usize) {
 }
 
 /// The name of a result, how it is read off an outcome, and the largest error.
-type Compared = (&'static str, fn(&Outcome) -> f64, f64);
+type Compared = (&'static str, fn(&ImpactOutcome) -> f64, f64);
 
 /// Thirteen angles of a sphere on a plane, simulated with the displacement history that the code of
 /// Chung and Ooi has.

@@ -2,7 +2,7 @@
 
 use stickslip_model::general::GeneralContact;
 use stickslip_model::{
-    Collider, Contact, Damping, End, HistoryOf, Law, Regime, Tangential, presets,
+    Collider, Contact, ContactEnd, Damping, HistoryOf, Law, Regime, Tangential, presets,
 };
 use stickslip_solver::Dop853;
 
@@ -80,7 +80,8 @@ fn contacts_on_the_border_of_slip_stick() {
                 let law = if a > 0.0 {
                     preset.law
                 } else {
-                    let law = Law { damping: Damping::None, end: End::Overlap, ..preset.law };
+                    let law =
+                        Law { damping: Damping::None, end: ContactEnd::Overlap, ..preset.law };
                     Law { limit_damping: false, ..law }
                 };
                 if checked.contains(&(law, kappa, a)) {
@@ -113,7 +114,7 @@ fn contacts_on_the_border_of_slip_stick() {
 /// slip. What ends a contact does not matter to its beginning.
 #[test]
 fn contacts_on_the_border_of_slip_with_even_dashpots() {
-    let damped = |law: &Law| law.damping != Damping::None && law.end == End::Force;
+    let damped = |law: &Law| law.damping != Damping::None && law.end == ContactEnd::Force;
     for law in laws().into_iter().filter(damped) {
         let at = |psi: f64| {
             let contact = Contact::new(2.0, psi, 0.2).unwrap().with_law(law, 1.0).unwrap();
@@ -130,7 +131,7 @@ fn contacts_on_the_border_of_slip_with_even_dashpots() {
 #[test]
 fn switches_at_greatest_compression_are_made_once() {
     let rescaled = laws().into_iter().filter(|law| law.rescaled && law.damping == Damping::None);
-    for law in rescaled.filter(|law| law.end == End::Force) {
+    for law in rescaled.filter(|law| law.end == ContactEnd::Force) {
         for kappa in (1..=60).map(|it| 1.25 * 1.07_f64.powi(it)).chain([2.0, 5.0, 10.0, 18.0]) {
             let at = |psi: f64, collider: Collider| {
                 let contact = Contact::new(kappa, psi, 0.0).unwrap().with_law(law, 0.0).unwrap();

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use stickslip_model::history::Snapshot;
 use stickslip_model::regularized::Regularized;
 use stickslip_model::{
-    Collider, Collision, CollisionError, Contact, CoulombTest, Damping, End, Engine, HistoryOf,
-    Law, Normal, Regime, SpringEnergy, Tangential, exact, presets,
+    Collider, Collision, CollisionError, Contact, ContactEnd, CoulombTest, Damping, Engine,
+    HistoryOf, Law, Normal, Regime, SpringEnergy, Tangential, exact, presets,
 };
 
 use crate::common::file;
@@ -51,9 +51,11 @@ pub fn laws() -> Vec<Law> {
     let mut laws = Vec::new();
     for normal in [Normal::Linear, Normal::Hertz] {
         for damping in [Damping::None, Damping::Linear, Damping::Viscoelastic, Damping::Tsuji] {
-            for (limit_damping, end) in
-                [(false, End::Force), (true, End::Overlap), (false, End::Overlap)]
-            {
+            for (limit_damping, end) in [
+                (false, ContactEnd::Force),
+                (true, ContactEnd::Overlap),
+                (false, ContactEnd::Overlap),
+            ] {
                 for tangential in [Tangential::Constant, Tangential::Mindlin] {
                     for history in [HistoryOf::Displacement, HistoryOf::Force] {
                         for rescaled in [false, true] {
@@ -94,8 +96,8 @@ fn other_tests() -> [Vec<Law>; 2] {
 fn a_contact_without_history_is_that_of_another_program() {
     let law = presets::find("gran/hooke").unwrap().law;
     for (end, expected) in [
-        (End::Overlap, [(0.5, 0.197_878), (2.0, 0.278_314)]),
-        (End::Force, [(0.5, 0.226_688), (2.0, 0.292_826)]),
+        (ContactEnd::Overlap, [(0.5, 0.197_878), (2.0, 0.278_314)]),
+        (ContactEnd::Force, [(0.5, 0.226_688), (2.0, 0.292_826)]),
     ] {
         for (psi, eps_t) in expected {
             let contact = Contact::new(1.0, psi, 0.3)
@@ -223,11 +225,12 @@ fn terms_without_effect_have_none() {
     for law in laws() {
         let contact = random(law, &mut rng);
         let collision = collide(contact);
-        if law.end == End::Force {
+        if law.end == ContactEnd::Force {
             let limited = with(contact, |law| law.limit_damping = true);
             close(&collision, &collide(limited), 1e-11);
             // Where the force is limited, nothing happens behind its zero.
-            let flying = with(contact, |law| (law.limit_damping, law.end) = (true, End::Overlap));
+            let flying =
+                with(contact, |law| (law.limit_damping, law.end) = (true, ContactEnd::Overlap));
             let flying = collide(flying);
             close(&collision, &flying, 1e-11);
             assert!(flying.contact_time >= collision.contact_time);
@@ -259,7 +262,7 @@ fn the_paper_s_law_is_one_of_them() {
 /// normal one.
 #[test]
 fn gross_sliding_has_a_closed_form() {
-    for law in laws().into_iter().filter(|law| law.end == End::Force || law.limit_damping) {
+    for law in laws().into_iter().filter(|law| law.end == ContactEnd::Force || law.limit_damping) {
         let damping = if law.damping == Damping::None { 0.0 } else { 0.7 };
         let contact = Contact::new(5.0, 9.0, damping).and_then(|it| it.with_law(law, 0.0)).unwrap();
         let collision = collide(contact);
@@ -309,7 +312,7 @@ fn courses_obey_their_laws() {
         same(history.duration(), collision.contact_time);
         same(last.velocity, collision.final_velocity);
         same(last.normal_velocity, -collision.eps_n);
-        if law.end == End::Overlap {
+        if law.end == ContactEnd::Overlap {
             same(last.compression, 0.0);
         }
         for phase in phases {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use stickslip_model::{
-    Collider, Collision, Contact, CoulombTest, Damping, End, Engine, HistoryOf, Law, Normal,
+    Collider, Collision, Contact, ContactEnd, CoulombTest, Damping, Engine, HistoryOf, Law, Normal,
     Regime, Side, Tangential, exact::ExactError, linear, presets,
 };
 
@@ -17,12 +17,12 @@ const ATTRACTING: Law = Law {
     history: HistoryOf::Displacement,
     rescaled: false,
     limit_damping: false,
-    end: End::Overlap,
+    end: ContactEnd::Overlap,
     coulomb_test: CoulombTest::Total,
     friction: Law::PAPER.friction,
 };
 const LIMITED: Law = Law { limit_damping: true, ..ATTRACTING };
-const TO_ZERO_FORCE: Law = Law { end: End::Force, ..ATTRACTING };
+const TO_ZERO_FORCE: Law = Law { end: ContactEnd::Force, ..ATTRACTING };
 
 const LAWS: [Law; 3] = [ATTRACTING, LIMITED, TO_ZERO_FORCE];
 

@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_4;
 
 use stickslip_model::limits::{coulomb, normal};
 use stickslip_model::spheres::{
-    Body, BodyPair, Elasticity, Encounter, Material, Motion, Outcome, Sphere, Surface, Vector3,
-    Wall, WallMotion,
+    Body, BodyPair, Elasticity, Encounter, ImpactOutcome, Material, Motion, Sphere, Surface,
+    Vector3, Wall, WallMotion,
 };
 use stickslip_model::{Collider, Contact, InvalidValue};
 
@@ -23,7 +23,7 @@ fn close(value: f64, expected: f64, relative: f64) {
     assert!((value / expected - 1.0).abs() <= relative, "{value} is not {expected}");
 }
 
-fn outcome(encounter: &Encounter) -> Outcome {
+fn outcome(encounter: &Encounter) -> ImpactOutcome {
     encounter.outcome(&Collider::default().collide(encounter.contact()).unwrap())
 }
 

@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 use stickslip_tracer::{
-    Cubic, Curve, Finding, Node, Point, Subdivision, Unresolved, Vertex, VertexKind, Window,
+    Cubic, Curve, Node, Point, Vertex, VertexKind, Window,
+    regions::{Finding, Subdivision},
+    tracing::Unresolved,
 };
 
 use super::cover::{Cover, are_near};

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use stickslip_expression::System;
 use stickslip_orbits::{FollowedOrbits, Guess, OrbitAtlas, Orbits, RegionOptions};
-use stickslip_tracer::{Point, Unnamed, VerifyOptions};
+use stickslip_tracer::{Point, Unnamed, regions::VerifyOptions};
 
 use crate::impact::{self, Closed};
 use crate::{ball, curves};

@@ -1,6 +1,6 @@
 //! What the tracer's margins mean for a collision.
 
-use stickslip_model::general::Mode;
+use stickslip_model::general::ContactMode;
 use stickslip_model::{Contact, Regime};
 use stickslip_solver::margin::{Margin, Place};
 
@@ -48,7 +48,7 @@ impl BoundaryKind {
             (Place::End, _) => Self::EndOfContact,
             (Place::Start { .. }, _) => Self::StartOfContact,
             (Place::Branch(_) | Place::Exit(_) | Place::Condition, _) => Self::StartOfTail,
-            (_, Some(Mode { regime: Regime::Slip, .. })) => Self::SlipGraze,
+            (_, Some(ContactMode { regime: Regime::Slip, .. })) => Self::SlipGraze,
             _ => Self::StickGraze,
         }
     }

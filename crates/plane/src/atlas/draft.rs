@@ -3,7 +3,9 @@
 use rayon::prelude::*;
 use stickslip_model::{Collider, CollisionError, Contact, InvalidValue};
 use stickslip_tracer::{
-    AtlasOptions, Curve, Draft, Executor, Network, NetworkOf, Point, TraceOptions, VerifyOptions,
+    AtlasOptions, Curve, Draft, Executor, Point, TraceOptions,
+    regions::VerifyOptions,
+    tracing::{Network, NetworkOf},
 };
 
 use super::boundary::BoundaryKind;

@@ -2,7 +2,7 @@
 
 use geojson::{Feature, FeatureCollection, Geometry, JsonObject};
 use serde_json::json;
-use stickslip_tracer::{Side, Stretch};
+use stickslip_tracer::regions::{CurveSide, OutlinePart};
 
 use super::document::AtlasDocument;
 use super::regions::CollisionAtlas;
@@ -81,15 +81,17 @@ fn polygons(atlas: &CollisionAtlas, lines: &[Ring], region: usize) -> Geometry {
 }
 
 /// The closed line along an outline.
-fn ring(chart: &Chart, lines: &[Ring], outline: &[Stretch]) -> Ring {
+fn ring(chart: &Chart, lines: &[Ring], outline: &[OutlinePart]) -> Ring {
     let mut points = Ring::new();
     for stretch in outline {
         // Each stretch begins with the last point of the one before.
         points.pop();
         match *stretch {
-            Stretch::Curve(curve, Side::Left) => points.extend(&lines[curve]),
-            Stretch::Curve(curve, Side::Right) => points.extend(lines[curve].iter().rev()),
-            Stretch::Window(ends) => points.extend(ends.iter().map(|end| chart.parameters(end))),
+            OutlinePart::Curve(curve, CurveSide::Left) => points.extend(&lines[curve]),
+            OutlinePart::Curve(curve, CurveSide::Right) => points.extend(lines[curve].iter().rev()),
+            OutlinePart::Window(ends) => {
+                points.extend(ends.iter().map(|end| chart.parameters(end)))
+            }
         }
     }
     points.pop();

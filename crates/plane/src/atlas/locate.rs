@@ -3,7 +3,7 @@
 use std::fmt;
 
 use stickslip_model::Engine;
-use stickslip_tracer::{Location, Point, Window};
+use stickslip_tracer::{Point, Window, regions::Location};
 
 use super::regions::CollisionAtlas;
 use crate::chart::{Chart, Range};

@@ -1,6 +1,6 @@
 //! The atlas itself: a window, its boundaries, and the regions between them.
 
-use stickslip_tracer::{Curve, Extremum, Names, Point, Subdivision};
+use stickslip_tracer::{Curve, Names, Point, regions::Subdivision, tracing::Extremum};
 
 use super::boundary::BoundaryKind;
 use super::frame::{Frame, RatioRange};

@@ -2,7 +2,7 @@
 
 use stickslip_model::Collider;
 use stickslip_tracer::{
-    AtlasOptions, Effort, Point, Surveyor, TraceOptions, VerifyOptions, Window,
+    AtlasOptions, Effort, Point, Surveyor, TraceOptions, Window, regions::VerifyOptions,
 };
 
 use super::draft::{CollisionDraft, integrated, room_beyond};

@@ -1,6 +1,9 @@
 //! What the comparison of an atlas with collisions found.
 
-use stickslip_tracer::{Atlas, AtlasOptions, Doubts, Effort, Origin, Verification};
+use stickslip_tracer::{
+    Atlas, AtlasOptions, Doubts, Effort,
+    regions::{Origin, Verification},
+};
 
 use super::boundary::BoundaryKind;
 use crate::family::CollisionPlane;

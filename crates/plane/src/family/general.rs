@@ -10,10 +10,14 @@
 //! end would take as many steps as a run may. The normal motion does not depend on the tangential
 //! one and is the same at all points of a plane, so its end is known beforehand.
 
-use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, REVERSAL, STATE};
+use stickslip_model::general::{
+    Beginning, CREST, ContactMode, GUARDS, GeneralContact, REVERSAL, STATE,
+};
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
-use stickslip_solver::margin::{Exit, Followed, Margin, Margins, Place, follow, margin, margins};
+use stickslip_solver::margin::{
+    Exit, FollowedRun, Margin, Margins, Place, follow, margin, margins,
+};
 use stickslip_solver::{Dop853, Observer, Options, Outcome, Run, Start, State, SwitchEvent, run};
 use stickslip_tracer::{FreeRun, Point};
 
@@ -49,7 +53,7 @@ pub struct GeneralFamily {
 }
 
 /// What the runs of the family are made of.
-type System = (GeneralContact, Start<Mode, STATE>);
+type System = (GeneralContact, Start<ContactMode, STATE>);
 
 /// Where else a run is looked at that fails, in parts of what rounding leaves open of a place.
 const BESIDE: [(f64, f64); 4] = [(10.0, 0.0), (-10.0, 0.0), (0.0, 10.0), (0.0, -10.0)];
@@ -116,7 +120,7 @@ impl GeneralFamily {
         let (system, start) = started(system);
         // A run that cannot follow the itinerary has no such end.
         let found = follow(Dop853, &system, start, self.span, &self.options, exits).ok()?;
-        let Followed { mut exits, run } = found?;
+        let FollowedRun { mut exits, run } = found?;
         exits.insert(0, *begins);
         let ended = run.outcome == (Outcome::EndedByGuard { guard: END });
         ended.then(|| (exits, restitution(&system, &run.state)))
@@ -259,8 +263,8 @@ fn corners(system: &GeneralContact, exits: &[Exit]) -> Vec<Margin> {
 /// Records the guards that fire.
 struct Fired(CollisionLabel);
 
-impl Observer<Mode, STATE> for Fired {
-    fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
+impl Observer<ContactMode, STATE> for Fired {
+    fn on_switch(&mut self, event: &SwitchEvent<ContactMode, STATE>) {
         let slips_on = event.guard == END && event.to.regime == Regime::Slip;
         match CollisionEvent::fired(event.guard) {
             Some(_) if slips_on => self.0.push(CollisionEvent::SlipsOn),
@@ -285,7 +289,7 @@ pub fn phases(
     contact: &Contact,
     begins: Option<Beginning>,
     fired: impl Iterator<Item = (usize, bool)>,
-) -> Vec<Mode> {
+) -> Vec<ContactMode> {
     let mut system = GeneralContact::new(*contact);
     if let Some(begins) = begins {
         system = system.beginning_with(begins);

@@ -8,7 +8,10 @@ use stickslip_plane::atlas::{
 use stickslip_plane::progress::{Progress, SILENT, Watch};
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::margin::{Exit, Hint, Margin, Place};
-use stickslip_tracer::{Family, Finding, Location, VertexKind};
+use stickslip_tracer::{
+    Family, VertexKind,
+    regions::{Finding, Location},
+};
 
 use crate::laws::with_law;
 use crate::windows::{crossing, empty, frame, traced};

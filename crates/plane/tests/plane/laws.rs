@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use stickslip_model::spheres::{BodyPair, Material, Surface};
-use stickslip_model::{Damping, End, Law, Normal, presets};
+use stickslip_model::{ContactEnd, Damping, Law, Normal, presets};
 use stickslip_plane::atlas::{self, BoundaryKind, CollisionAtlas, Frame};
 use stickslip_plane::{CollisionPlane, Range, progress};
 use stickslip_solver::margin::Margin;
-use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};
+use stickslip_tracer::{Family, TraceOptions, trace, tracing::Unresolved};
 
 use crate::windows::{frame, traced};
 
@@ -183,7 +183,7 @@ fn a_graze_just_behind_greatest_compression_has_its_margin() {
         normal: Normal::Linear,
         damping: Damping::Tsuji,
         rescaled: true,
-        end: End::Overlap,
+        end: ContactEnd::Overlap,
         ..Law::PAPER
     };
     let plane = CollisionPlane::new((1.0, 1.1), (1.2, 1.3), 0.3).unwrap();

@@ -10,7 +10,7 @@ use stickslip_plane::atlas::{AtlasError, Frame, trace};
 use stickslip_plane::progress::SILENT;
 use stickslip_plane::stack::{DampingLayer, DampingStack, stack};
 use stickslip_solver::margin::{Hint, Margin, Place};
-use stickslip_tracer::Change;
+use stickslip_tracer::stack::Change;
 
 use crate::windows::frame;
 

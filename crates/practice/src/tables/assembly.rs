@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use stickslip_model::{Collision, Contact};
 use stickslip_plane::atlas::CollisionAtlas;
-use stickslip_tracer::Location;
+use stickslip_tracer::regions::Location;
 
 use super::boundaries::Boundaries;
 use super::chebyshev::{ACROSS, ALONG, coefficients, extrema, nodes, powers, rounded, value};

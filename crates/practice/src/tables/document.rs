@@ -7,7 +7,7 @@ use stickslip_plane::Range;
 use super::TableError;
 use super::chebyshev::{ACROSS, ALONG};
 use super::settings::TableWindow;
-use super::table::{Arrays, NO_REGION, Table, TableVerification};
+use super::table::{Arrays, NO_REGION, RestitutionTable, TableVerification};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.table/1";
@@ -15,7 +15,7 @@ pub const SCHEMA: &str = "stickslip.table/1";
 /// What numbers are expected to be.
 const ASCENDING: &str = "a finite number in an ascending range";
 
-/// A table as its JSON has it. See [`Table`] for the fields.
+/// A table as its JSON has it. See [`RestitutionTable`] for the fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the fields are those of a table")]
 pub struct TableDocument {
@@ -29,8 +29,8 @@ pub struct TableDocument {
     pub arrays: Arrays,
 }
 
-impl From<&Table> for TableDocument {
-    fn from(table: &Table) -> Self {
+impl From<&RestitutionTable> for TableDocument {
+    fn from(table: &RestitutionTable) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
             window: table.window,
@@ -43,7 +43,7 @@ impl From<&Table> for TableDocument {
     }
 }
 
-impl TryFrom<TableDocument> for Table {
+impl TryFrom<TableDocument> for RestitutionTable {
     type Error = TableError;
 
     /// The table of a document. Everything is checked that a look-up relies on; that the

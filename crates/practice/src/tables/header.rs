@@ -9,7 +9,7 @@ use stickslip_plane::CollisionPlane;
 use super::chebyshev::{ACROSS, ALONG};
 use super::settings::TableWindow;
 use super::stretch::Stretch;
-use super::table::{NO_REGION, Table, TableVerification};
+use super::table::{NO_REGION, RestitutionTable, TableVerification};
 
 /// The header, with names between @ for what differs.
 const TEMPLATE: &str = include_str!("header.h");
@@ -83,7 +83,7 @@ pub fn require_prefix(prefix: &str) -> Result<(), InvalidValue> {
     InvalidValue::check("prefix", prefix, expected, ok)
 }
 
-impl Table {
+impl RestitutionTable {
     /// The table as a self-contained header for C99, whose names begin with `prefix`. Functions and
     /// arguments are explained in it.
     ///

@@ -19,7 +19,7 @@ pub const NO_REGION: u32 = u32::MAX;
 /// of the strip. It uses sums, products, quotients and square roots only. The C header
 /// does the same in the same order and has the same bits.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct RestitutionTable {
     /// The window.
     pub window: TableWindow,
     /// ε_n of a table over (κ, ψ), which is one number at one damping.
@@ -62,7 +62,7 @@ impl TableVerification {
         Self { points: 0, largest_error: 0.0, x: 0.0, y: 0.0, largest_error_of_eps_n: 0.0 };
 }
 
-/// The arrays of a [`Table`], as its files have them.
+/// The arrays of a [`RestitutionTable`], as its files have them.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Arrays {
@@ -109,7 +109,7 @@ struct TablePlace {
     across: f64,
 }
 
-impl Table {
+impl RestitutionTable {
     /// ε_t at x and y; not a number outside the table, or if x or y is not a number.
     pub fn eps_t(&self, x: f64, y: f64) -> f64 {
         self.place(x, y).map_or(f64::NAN, |place| self.arrays.value(place))

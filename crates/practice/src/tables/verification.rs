@@ -7,7 +7,7 @@ use stickslip_plane::CollisionPlane;
 use super::TableError;
 use super::chebyshev::value;
 use super::strip::{restitution, within};
-use super::table::{Arrays, Table, TableVerification};
+use super::table::{Arrays, RestitutionTable, TableVerification};
 
 /// Points at random in each strip.
 const RANDOM: usize = 48;
@@ -18,7 +18,10 @@ const BESIDE: u32 = 16;
 ///
 /// # Errors
 /// [`TableError::Engine`]: a collision cannot be computed.
-pub fn verify(table: &Table, plane: &CollisionPlane) -> Result<TableVerification, TableError> {
+pub fn verify(
+    table: &RestitutionTable,
+    plane: &CollisionPlane,
+) -> Result<TableVerification, TableError> {
     let slabs = 0..table.arrays().scales.len();
     let found = slabs.into_par_iter().map(|slab| in_slab(table, plane, slab));
     let found: Vec<Result<TableVerification, TableError>> = found.collect();
@@ -33,7 +36,7 @@ pub fn verify(table: &Table, plane: &CollisionPlane) -> Result<TableVerification
 }
 
 fn in_slab(
-    table: &Table,
+    table: &RestitutionTable,
     plane: &CollisionPlane,
     slab: usize,
 ) -> Result<TableVerification, TableError> {

@@ -1,7 +1,7 @@
 //! One collision in the steps of a particle code.
 
 use stickslip_model::{
-    Contact, CoulombTest, Damping, End, HistoryOf, Law, Normal, Tangential, exact,
+    Contact, ContactEnd, CoulombTest, Damping, HistoryOf, Law, Normal, Tangential, exact,
 };
 
 /// The duration of a contact with the normal force of `law` and without damping, in scaled units:
@@ -45,7 +45,7 @@ const LONGEST: f64 = 10.0;
 /// The contact begins after the part `phase` of a step, from 0 to below 1: the gap is then
 /// phase·dt at the scaled velocity 1.
 ///
-/// A contact that ends where the force does ([`End::Force`]) is computed as particle codes do it,
+/// A contact that ends where the force does ([`ContactEnd::Force`]) is computed as particle codes do it,
 /// with a force that is kept from attracting until the overlap vanishes. Without steps both are the
 /// same.
 ///
@@ -121,7 +121,9 @@ impl ForceRule {
         let law = contact.law();
         Self {
             law,
-            limited: law.limit_damping || law.end == End::Force || law.damping.is_hysteretic(),
+            limited: law.limit_damping
+                || law.end == ContactEnd::Force
+                || law.damping.is_hysteretic(),
             kappa: contact.kappa(),
             damping: contact.damping(),
             tangential_damping: contact.tangential_damping(),

@@ -6,7 +6,7 @@ use std::path::Path;
 use fastrand::Rng;
 use stickslip_model::{Contact, Engine, InvalidValue, Law, exact};
 use stickslip_plane::{Range, progress};
-use stickslip_practice::tables::{self, Table, TableError, TableSettings, TableWindow};
+use stickslip_practice::tables::{self, RestitutionTable, TableError, TableSettings, TableWindow};
 use stickslip_practice::tables::{Keys, TableDocument};
 
 use crate::c_program;
@@ -21,18 +21,18 @@ fn scaled(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> TableWindow {
     TableWindow::Scaled { kappa, psi, damping, law: Law::PAPER, tangential_damping: 0.0 }
 }
 
-fn made(settings: &TableSettings) -> Table {
+fn made(settings: &TableSettings) -> RestitutionTable {
     tables::run(settings, progress::SILENT).expect("a table")
 }
 
-fn exact_eps_t(table: &Table, kappa: f64, psi: f64) -> f64 {
+fn exact_eps_t(table: &RestitutionTable, kappa: f64, psi: f64) -> f64 {
     let TableWindow::Scaled { damping, .. } = table.window else { panic!("another window") };
     let contact = Contact::new(kappa, psi, damping).expect("a contact");
     Engine::Exact.collide(contact).expect("a collision").0.eps_t()
 }
 
 /// The largest error at random points of a table.
-fn largest_error(table: &Table, points: u32) -> f64 {
+fn largest_error(table: &RestitutionTable, points: u32) -> f64 {
     let mut random = Rng::with_seed(7);
     let mut largest = 0.0_f64;
     for _ in 0..points {
@@ -139,7 +139,7 @@ fn a_document_makes_the_same_table() {
     let table = made(&small(1e-4));
     let text = serde_json::to_string(&TableDocument::from(&table)).unwrap();
     let document: TableDocument = serde_json::from_str(&text).unwrap();
-    assert_eq!(Table::try_from(document), Ok(table));
+    assert_eq!(RestitutionTable::try_from(document), Ok(table));
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn a_document_with_fewer_keys_is_readable() {
     arrays.strip_keys = Keys { shift: keys.shift + 1, first: first / 2, count: pairs.len() };
     let slabs = arrays.strip_hints.chunks(keys.count);
     arrays.strip_hints = slabs.flat_map(|hints| pairs.iter().map(|&key| hints[key])).collect();
-    let read = Table::try_from(document).expect("a table");
+    let read = RestitutionTable::try_from(document).expect("a table");
     let [kappa, psi] = table.window.sides();
     for k in 0..2000 {
         let (i, j) = (f64::from(k % 40) / 39.0, f64::from(k / 40) / 49.0);
@@ -171,7 +171,7 @@ fn documents_that_contradict_themselves_are_refused() {
     let refused = |change: &dyn Fn(&mut TableDocument)| {
         let mut changed = document.clone();
         change(&mut changed);
-        let error = Table::try_from(changed).expect_err("a contradiction");
+        let error = RestitutionTable::try_from(changed).expect_err("a contradiction");
         assert!(!error.to_string().is_empty());
     };
     refused(&|it| it.schema = "stickslip.table/0".to_owned());

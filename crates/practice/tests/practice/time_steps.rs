@@ -1,6 +1,6 @@
 //! What is promised of errors of time steps.
 
-use stickslip_model::{Contact, End, Engine, Law, exact, presets};
+use stickslip_model::{Contact, ContactEnd, Engine, Law, exact, presets};
 use stickslip_plane::progress::{self, Progress};
 use stickslip_practice::time_steps::{
     self, Scheme, Status, Stepped, SteppedQuantity, TimeStepSettings, TimeSteps, TimeStepsError,
@@ -156,7 +156,7 @@ fn progress_is_complete() {
 /// A contact that ends where its force does is one whose force is limited.
 #[test]
 fn the_paper_s_law_is_that_of_a_limited_force() {
-    let limited = Law { limit_damping: true, end: End::Overlap, ..Law::PAPER };
+    let limited = Law { limit_damping: true, end: ContactEnd::Overlap, ..Law::PAPER };
     for damping in [0.01, 0.3, 5.0, 300.0] {
         let paper = Contact::new(5.0, 0.5, damping).expect("parameters");
         let other = paper.with_law(limited, 0.0).expect("parameters");

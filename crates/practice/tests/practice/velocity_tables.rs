@@ -9,7 +9,7 @@ use stickslip_model::spheres::{Body, BodyPair, Material, Sphere, Surface, Wall};
 use stickslip_model::{Engine, Normal, presets};
 use stickslip_plane::{Range, progress};
 use stickslip_practice::tables::TableDocument;
-use stickslip_practice::tables::{self, Table, TableSettings, TableWindow};
+use stickslip_practice::tables::{self, RestitutionTable, TableSettings, TableWindow};
 
 use crate::c_program;
 
@@ -41,17 +41,17 @@ fn small(bound: f64) -> TableSettings {
 }
 
 /// The table that most tests look at.
-fn common() -> &'static Table {
-    static TABLE: LazyLock<Table> = LazyLock::new(|| made(&small(1e-4)));
+fn common() -> &'static RestitutionTable {
+    static TABLE: LazyLock<RestitutionTable> = LazyLock::new(|| made(&small(1e-4)));
     &TABLE
 }
 
-fn made(settings: &TableSettings) -> Table {
+fn made(settings: &TableSettings) -> RestitutionTable {
     tables::run(settings, progress::SILENT).expect("a table")
 }
 
 /// ε_t, ε_n and the switches of an impact.
-fn exact(table: &Table, normal: f64, tangential: f64) -> (f64, f64, String) {
+fn exact(table: &RestitutionTable, normal: f64, tangential: f64) -> (f64, f64, String) {
     let TableWindow::Velocities { pair, .. } = table.window else { panic!("another window") };
     let contact = pair.impact(normal, tangential).expect("an impact").contact;
     let (collision, _) = Engine::Auto.collide(contact).expect("a collision");
@@ -59,7 +59,7 @@ fn exact(table: &Table, normal: f64, tangential: f64) -> (f64, f64, String) {
 }
 
 /// The largest errors of ε_t and ε_n at random points, spread evenly over logarithms.
-fn largest_errors(table: &Table, points: u32) -> [f64; 2] {
+fn largest_errors(table: &RestitutionTable, points: u32) -> [f64; 2] {
     let mut random = Rng::with_seed(11);
     let mut largest = [0.0_f64; 2];
     for _ in 0..points {
@@ -204,11 +204,11 @@ fn a_document_makes_the_same_table() {
     let table = common();
     let text = serde_json::to_string(&TableDocument::from(table)).unwrap();
     let document: TableDocument = serde_json::from_str(&text).unwrap();
-    assert_eq!(Table::try_from(document.clone()), Ok(table.clone()));
+    assert_eq!(RestitutionTable::try_from(document.clone()), Ok(table.clone()));
     let refused = |change: &dyn Fn(&mut TableDocument)| {
         let mut changed = document.clone();
         change(&mut changed);
-        assert!(Table::try_from(changed).is_err());
+        assert!(RestitutionTable::try_from(changed).is_err());
     };
     refused(&|it| it.constant_eps_n = Some(1.0));
     refused(&|it| it.arrays.normals.clear());

@@ -6,7 +6,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip_solver::Options;
 use stickslip_solver::sliding::SlidingMode;
-use stickslip_tracer::{DynamicProblem, DynamicSetting, Point};
+use stickslip_tracer::{
+    Point,
+    hybrid::{DynamicProblem, DynamicSetting},
+};
 
 use crate::hybrid::arguments::{
     ChangeArguments, FunctionArguments, Settings, Start, StartArguments, SystemArguments,

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use pyo3::prelude::*;
-use stickslip_tracer::{FamilyError, SubdivisionError, TraceError};
+use stickslip_tracer::{TraceError, hybrid::FamilyError, regions::SubdivisionError};
 
 use crate::failure::{bad_input, failed};
 

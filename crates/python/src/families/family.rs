@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_expression::{RuleOrder, SystemFamily};
 use stickslip_tracer::{
-    Accumulation, AtlasOptions, Family, Monitor, Point, RunNames, TraceOptions, Window, follow,
+    Accumulation, AtlasOptions, Family, Point, RunNames, TraceOptions, Window,
+    tracing::{Monitor, follow},
 };
 
 use crate::failure::{bad_input, failed};

@@ -7,7 +7,10 @@ use pyo3::prelude::*;
 use stickslip_expression::SystemFamily;
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, Options};
-use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
+use stickslip_tracer::{
+    Family, FreeRun, Point,
+    hybrid::{DynamicFamily, Itinerary},
+};
 
 use crate::failure::bad_input;
 use crate::families::blueprint::{Blueprint, Members};
@@ -95,7 +98,7 @@ impl Runner {
     /// The result of a run, unless a function has failed.
     fn checked<T>(
         &self,
-        run: impl FnOnce(&Runs) -> Result<T, stickslip_tracer::FamilyError>,
+        run: impl FnOnce(&Runs) -> Result<T, stickslip_tracer::hybrid::FamilyError>,
     ) -> Result<T, UserError> {
         let result = run(&self.runs);
         if let Some(looked) = &self.looked {

@@ -4,7 +4,11 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
 use pyo3::prelude::*;
-use stickslip_tracer::{AtlasOptions, Change, Itinerary, Layer, Stack, StackOptions};
+use stickslip_tracer::{
+    AtlasOptions,
+    hybrid::Itinerary,
+    stack::{Change, Layer, Stack, StackOptions},
+};
 
 use crate::failure::bad_input;
 use crate::families::atlas::{FamilyAtlas, Label, expect_like, label};

@@ -2,7 +2,7 @@
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use stickslip_solver::sliding::Side;
+use stickslip_solver::sliding::SurfaceSide;
 use stickslip_solver::{Direction, EmbeddedPair, Guard, InvalidValue, Options, Schedule, Times};
 
 use crate::failure::bad_input;
@@ -126,15 +126,15 @@ pub struct Start {
     pub mode: usize,
     pub s: f64,
     pub state: Vec<f64>,
-    pub sides: Vec<Side>,
+    pub sides: Vec<SurfaceSide>,
 }
 
 impl StartArguments<'_> {
     pub fn owned(&self) -> Start {
         let side = |sign: &i8| match sign {
-            0 => Side::Sliding,
-            1.. => Side::Above,
-            _ => Side::Below,
+            0 => SurfaceSide::Sliding,
+            1.. => SurfaceSide::Above,
+            _ => SurfaceSide::Below,
         };
         let sides = self.3.iter().map(side).collect();
         Start { mode: self.0, s: self.1, state: self.2.as_array().to_vec(), sides }

@@ -7,8 +7,8 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_solver::dynamic::{DynamicDense, DynamicEvent, DynamicObserver};
-use stickslip_solver::sliding::{Refusal, Side};
-use stickslip_solver::{Grazing, Pole, Preempted, Rest};
+use stickslip_solver::sliding::{Refusal, SurfaceSide};
+use stickslip_solver::{Grazing, Pole, Rest, hybrid::Preempted};
 
 use crate::background::Signals;
 use crate::hybrid::segments::{Segments, fraction};
@@ -290,11 +290,11 @@ impl<const SEGMENTS: bool> DynamicObserver<Regime> for Record<SEGMENTS> {
 }
 
 /// The sign by which a side goes in Python.
-fn sign_of(side: Side) -> i8 {
+fn sign_of(side: SurfaceSide) -> i8 {
     match side {
-        Side::Above => 1,
-        Side::Below => -1,
-        Side::Sliding => 0,
+        SurfaceSide::Above => 1,
+        SurfaceSide::Below => -1,
+        SurfaceSide::Sliding => 0,
     }
 }
 

@@ -2,13 +2,13 @@
 
 use serde_json::json;
 use stickslip_figure::number;
-use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
+use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, MapValues};
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_figure::style::FRAME;
 use stickslip_model::limits::coulomb;
 use stickslip_plane::{GridAxis, Range};
 use stickslip_studies::paper::{ALPHA, MU, psi, ratio};
-use stickslip_studies::{Cell, Column, Study, Table};
+use stickslip_studies::{Cell, Study, StudyColumn, StudyTable};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -22,10 +22,10 @@ const VELOCITY: Range = Range { low: 0.0, high: 2.0 };
 /// The largest number of velocities along an axis.
 const MOST_CELLS: usize = 200;
 
-const COLUMNS: [Column; 3] = [
-    Column::new("normal_m_per_s", "g_n in m/s"),
-    Column::new("tangential_m_per_s", "g_t in m/s"),
-    Column::new("eps_t", "ε_t"),
+const COLUMNS: [StudyColumn; 3] = [
+    StudyColumn::new("normal_m_per_s", "g_n in m/s"),
+    StudyColumn::new("tangential_m_per_s", "g_t in m/s"),
+    StudyColumn::new("eps_t", "ε_t"),
 ];
 
 /// Computes the part.
@@ -54,7 +54,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         vertical: axis_named("tangential velocity g_t in m/s"),
         columns: axis.cells,
         rows: axis.cells,
-        values: Values::Restitution(&eps_t),
+        values: MapValues::Restitution(&eps_t),
         lines: vec![(FRAME, limit_line(VELOCITY.high))],
         points: Vec::new(),
     };
@@ -79,7 +79,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
             number(100.0 * share, 3)
         )],
         json: json!({ "mu": MU, "alpha": ALPHA, "limit_ratio": limit, "share_at_rest": share }),
-        tables: vec![Table {
+        tables: vec![StudyTable {
             name: "figure1",
             title: "ε_t of pure Coulomb sliding at the centres of the cells".to_owned(),
             columns: COLUMNS.to_vec(),

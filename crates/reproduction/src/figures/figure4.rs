@@ -8,7 +8,7 @@ use stickslip_figure::pictures::studies::Picture;
 use stickslip_figure::{number, style};
 use stickslip_plane::atlas::CollisionAtlas;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
-use stickslip_studies::{Column, Study, Table};
+use stickslip_studies::{Study, StudyColumn, StudyTable};
 
 use super::boundaries::summary;
 use super::points::{Interval, LetteredPoint, intervals, points};
@@ -24,14 +24,14 @@ pub const TITLE: &str = "Figure 4: number of switches";
 /// The file of the traced boundaries.
 const ATLAS: &str = "figure4_boundaries.json";
 
-const COLUMNS: [Column; 7] = [
+const COLUMNS: [StudyColumn; 7] = [
     AXIS,
     KAPPA,
-    Column::headed("ratio_low", "g_t/g_n from", "g_t/g_n at the lower end of the interval"),
-    Column::headed("ratio_high", "to", "g_t/g_n at the upper end of the interval"),
+    StudyColumn::headed("ratio_low", "g_t/g_n from", "g_t/g_n at the lower end of the interval"),
+    StudyColumn::headed("ratio_high", "to", "g_t/g_n at the upper end of the interval"),
     SWITCHES,
     PHASES,
-    Column::headed("points", "points", "the points of the figure inside the interval"),
+    StudyColumn::headed("points", "points", "the points of the figure inside the interval"),
 ];
 
 /// The intervals between boundaries on the line of the points, in both readings.
@@ -176,7 +176,7 @@ fn caption(line: &[Interval], points: &[LetteredPoint]) -> String {
 }
 
 /// All intervals of both lines, with the points in them.
-fn table(lines: &Lines, points: &[LetteredPoint]) -> Table {
+fn table(lines: &Lines, points: &[LetteredPoint]) -> StudyTable {
     let mut rows = Vec::new();
     for (reading, line) in Reading::ALL.into_iter().zip(lines) {
         for Interval { ratios: [low, high], collision } in line {
@@ -193,7 +193,7 @@ fn table(lines: &Lines, points: &[LetteredPoint]) -> Table {
             ]);
         }
     }
-    Table {
+    StudyTable {
         name: "figure4",
         title: format!("Intervals between boundaries at {} on the axis", number(STIFFNESS, 4)),
         columns: COLUMNS.to_vec(),

@@ -6,7 +6,7 @@ use stickslip_figure::pictures::gallery::{self, Exhibit, PANEL_WIDTH};
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Collision;
 use stickslip_studies::paper::{ALPHA, MU, Reading, STIFFNESS};
-use stickslip_studies::{Cell, Column, Study, Table};
+use stickslip_studies::{Cell, Study, StudyColumn, StudyTable};
 
 use super::course::{first_and_last, followed, largest_compression, rows};
 use super::points::{LetteredPoint, intervals, points};
@@ -19,16 +19,16 @@ use crate::error::ReproductionError;
 /// The title of the part.
 pub const TITLE: &str = "Figure 5: forces at the points a to o";
 
-const COLUMNS: [Column; 10] = [
+const COLUMNS: [StudyColumn; 10] = [
     AXIS,
     POINT,
     KAPPA,
     RATIO,
     SWITCHES,
     PHASES,
-    Column::headed("first_switch", "first switch", "scaled time of the first switch"),
-    Column::headed("last_switch", "last switch", "scaled time of the last switch"),
-    Column::headed("reversals", "reversals", "number of reversals of the motion"),
+    StudyColumn::headed("first_switch", "first switch", "scaled time of the first switch"),
+    StudyColumn::headed("last_switch", "last switch", "scaled time of the last switch"),
+    StudyColumn::headed("reversals", "reversals", "number of reversals of the motion"),
     EPS_T,
 ];
 
@@ -50,7 +50,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         tables.push(courses(reading, &exhibits));
         pictures.push(picture(reading, &exhibits));
     }
-    let table = Table {
+    let table = StudyTable {
         name: "figure5",
         title: "The collisions at the points".to_owned(),
         columns: COLUMNS.to_vec(),
@@ -127,12 +127,12 @@ fn name(reading: Reading) -> &'static str {
     }
 }
 
-fn courses(reading: Reading, exhibits: &[Exhibit]) -> Table {
+fn courses(reading: Reading, exhibits: &[Exhibit]) -> StudyTable {
     let rows = exhibits.iter().flat_map(|Exhibit { name, collision, history, .. }| {
         let moments = rows(collision, history, PANEL_WIDTH).into_iter();
         moments.map(move |moment| [vec![name.as_str().into()], moment].concat())
     });
-    Table {
+    StudyTable {
         name: name(reading),
         title: format!("Forces and velocity against time at the points, {}", reading.words()),
         columns: [&[POINT], &COURSE[..]].concat(),

@@ -8,7 +8,7 @@ use stickslip_figure::pictures::studies::Picture;
 use stickslip_model::Collision;
 use stickslip_model::history::History;
 use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
-use stickslip_studies::{Column, Study, Table};
+use stickslip_studies::{Study, StudyColumn, StudyTable};
 
 use super::course::{followed, rows};
 use super::reproduction::Reproduction;
@@ -19,9 +19,12 @@ use crate::error::ReproductionError;
 /// The title of the part.
 pub const TITLE: &str = "Figure 6: a stiff spring";
 
-const FIRST_MINIMUM: Column =
-    Column::headed("first_minimum", "first minimum", "scaled time of the velocity's first minimum");
-const COLUMNS: [Column; 7] = [AXIS, KAPPA, RATIO, SWITCHES, PHASES, FIRST_MINIMUM, EPS_T];
+const FIRST_MINIMUM: StudyColumn = StudyColumn::headed(
+    "first_minimum",
+    "first minimum",
+    "scaled time of the velocity's first minimum",
+);
+const COLUMNS: [StudyColumn; 7] = [AXIS, KAPPA, RATIO, SWITCHES, PHASES, FIRST_MINIMUM, EPS_T];
 
 /// Computes the part.
 ///
@@ -57,7 +60,7 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
             minimum.unwrap_or(f64::NAN).into(),
             collision.eps_t().into(),
         ]);
-        tables.push(Table {
+        tables.push(StudyTable {
             name,
             title: format!("Forces and velocity against time, κ = {kappa}"),
             columns: COURSE.to_vec(),
@@ -82,7 +85,7 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
         "The paper has many sliding episodes, and the first minimum shortly after t = 1. {late} after \
          t = 1."
     ));
-    let table = Table {
+    let table = StudyTable {
         name: "figure6",
         title: "The collisions".to_owned(),
         columns: COLUMNS.to_vec(),

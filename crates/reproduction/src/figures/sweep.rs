@@ -1,7 +1,7 @@
 //! Maps in memory.
 
 use stickslip_figure::pictures::grid;
-use stickslip_figure::pictures::map::{MapPanel, Values};
+use stickslip_figure::pictures::map::{MapPanel, MapValues};
 use stickslip_model::Engine;
 use stickslip_model::limits::coulomb;
 use stickslip_plane::{Grid, Quantity, Tile, sweep};
@@ -23,15 +23,15 @@ impl Sweep {
 
     /// The restitution as a panel of a picture.
     pub fn restitution<'a>(&'a self, heading: &'a str) -> MapPanel<'a> {
-        self.panel(heading, Values::Restitution(&self.results.eps_t))
+        self.panel(heading, MapValues::Restitution(&self.results.eps_t))
     }
 
     /// The number of switches as a panel of a picture.
     pub fn switches<'a>(&'a self, heading: &'a str) -> MapPanel<'a> {
-        self.panel(heading, Values::Switches(&self.results.switch_count))
+        self.panel(heading, MapValues::Switches(&self.results.switch_count))
     }
 
-    fn panel<'a>(&'a self, heading: &'a str, values: Values<'a>) -> MapPanel<'a> {
+    fn panel<'a>(&'a self, heading: &'a str, values: MapValues<'a>) -> MapPanel<'a> {
         let size = (self.grid.columns.cells, self.grid.rows.cells);
         grid::panel(&self.grid, heading, size, values)
     }

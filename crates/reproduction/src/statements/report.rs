@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use stickslip_studies::{Cell, Column, Study, Table};
+use stickslip_studies::{Cell, Study, StudyColumn, StudyTable};
 
 use super::Audit;
 use super::spring::Spring;
@@ -13,20 +13,20 @@ pub const SCHEMA: &str = "stickslip.audit/1";
 /// The title of the study.
 pub const TITLE: &str = "Statements of the paper";
 
-const VERDICTS: [Column; 7] = [
-    Column::headed("number", "#", "number of the statement"),
-    Column::headed("statement", "statement", "the statement in other words"),
-    Column::headed("place", "in the paper", "place of the statement in the paper"),
-    Column::headed("verdict", "verdict", "whether the statement is true"),
-    Column::headed("condition", "condition", "the condition under which it is true"),
-    Column::headed("explanation", "explanation", "the reason for the verdict"),
-    Column::headed("command", "command", "the command that tests this statement alone"),
+const VERDICTS: [StudyColumn; 7] = [
+    StudyColumn::headed("number", "#", "number of the statement"),
+    StudyColumn::headed("statement", "statement", "the statement in other words"),
+    StudyColumn::headed("place", "in the paper", "place of the statement in the paper"),
+    StudyColumn::headed("verdict", "verdict", "whether the statement is true"),
+    StudyColumn::headed("condition", "condition", "the condition under which it is true"),
+    StudyColumn::headed("explanation", "explanation", "the reason for the verdict"),
+    StudyColumn::headed("command", "command", "the command that tests this statement alone"),
 ];
 
-const EVIDENCE: [Column; 3] = [
-    Column::headed("number", "#", "number of the statement"),
-    Column::headed("name", "evidence", "name of the value"),
-    Column::headed("value", "value", "the value, in scaled units where no others are named"),
+const EVIDENCE: [StudyColumn; 3] = [
+    StudyColumn::headed("number", "#", "number of the statement"),
+    StudyColumn::headed("name", "evidence", "name of the value"),
+    StudyColumn::headed("value", "value", "the value, in scaled units where no others are named"),
 ];
 
 impl Audit {
@@ -62,13 +62,13 @@ impl Audit {
             findings: self.statements.iter().map(Statement::sentence).collect(),
             json: self.json(),
             tables: vec![
-                Table {
+                StudyTable {
                     name: "audit",
                     title: "Verdicts".to_owned(),
                     columns: VERDICTS.to_vec(),
                     rows: verdicts.collect(),
                 },
-                Table {
+                StudyTable {
                     name: "audit_evidence",
                     title: "Numbers from which the verdicts follow".to_owned(),
                     columns: EVIDENCE.to_vec(),

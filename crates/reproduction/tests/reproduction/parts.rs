@@ -9,7 +9,7 @@ use stickslip_reproduction::statements::{
     self, Audit, Evidence, Spring, Statement, StatementFinding, Verdict,
 };
 use stickslip_studies::paper::{Reading, STIFFNESS, psi};
-use stickslip_studies::{Cell, Table, convergence};
+use stickslip_studies::{Cell, StudyTable, convergence};
 
 /// All parts but the study of convergence, which has tests of its own and takes long.
 static SECTIONS: LazyLock<Vec<Section>> = LazyLock::new(|| {
@@ -23,7 +23,7 @@ fn section(name: &str) -> &'static Section {
     SECTIONS.iter().find(|section| section.study.name == name).expect("the section")
 }
 
-fn table(section: &'static Section, name: &str) -> &'static Table {
+fn table(section: &'static Section, name: &str) -> &'static StudyTable {
     section.study.tables.iter().find(|table| table.name == name).expect("the table")
 }
 

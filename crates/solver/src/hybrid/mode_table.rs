@@ -17,7 +17,7 @@ pub struct ModeNumber(usize);
 ///
 /// ```
 /// use stickslip_solver::dynamic::{DynamicStart, DynamicSystem, run_dynamic};
-/// use stickslip_solver::{Direction, Dop853, Guard, ModeNumber, ModeTable, Options};
+/// use stickslip_solver::{Direction, Dop853, Guard, Options, hybrid::{ModeNumber, ModeTable}};
 ///
 /// /// Rooms of which each has a heater, which is on or off.
 /// struct Rooms {

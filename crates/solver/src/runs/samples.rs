@@ -5,7 +5,7 @@ use stickslip_number::InvalidValue;
 use crate::hybrid::schedule::check_order;
 use crate::hybrid::{Observer, SwitchEvent};
 use crate::method::{Dense, State};
-use crate::runs::trajectory::Segment;
+use crate::runs::trajectory::TrajectorySegment;
 
 /// The part of a step by which its end may be rounded.
 const ROUNDING: f64 = 1e-9;
@@ -53,7 +53,7 @@ pub struct Samples<Mode, const N: usize> {
     done: usize,
     missing: Vec<f64>,
     /// The last segment, until it is known where the next one starts.
-    last: Option<Segment<Mode, N>>,
+    last: Option<TrajectorySegment<Mode, N>>,
 }
 
 impl<Mode: Copy, const N: usize> Samples<Mode, N> {
@@ -137,7 +137,7 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Samples<Mode, N> {
             self.turn(forwards);
         }
         self.until(dense.start(), forwards);
-        self.last = Some(Segment { mode, dense: *dense });
+        self.last = Some(TrajectorySegment { mode, dense: *dense });
     }
 
     fn on_end(&mut self, mode: Mode, s: f64, state: &State<N>) {

@@ -8,7 +8,7 @@ use crate::hybrid::{HybridSystem, Run, Start, SwitchEvent};
 use crate::method::{DenseOf, Method, State, StepOf};
 use crate::options::Options;
 use crate::runs::runner::{Runner, Watcher, switch_event};
-use crate::runs::trajectory::Segment;
+use crate::runs::trajectory::TrajectorySegment;
 use crate::system::Fixed;
 
 /// A system whose runs are taken step by step.
@@ -56,7 +56,7 @@ pub struct Steps<'a, 'b, M, S: HybridSystem<N, G>, const N: usize, const G: usiz
 #[derive(Clone, Debug)]
 pub struct StepTaken<Mode, const N: usize> {
     /// Its mode, and the state along it.
-    pub segment: Segment<Mode, N>,
+    pub segment: TrajectorySegment<Mode, N>,
     /// The switches since the step before: those on this step and at its end, and on the first step
     /// those at the start of the run.
     pub switches: Vec<SwitchEvent<Mode, N>>,
@@ -64,7 +64,7 @@ pub struct StepTaken<Mode, const N: usize> {
 
 /// What is seen of a run.
 struct Taken<Mode, const N: usize> {
-    segment: Option<Segment<Mode, N>>,
+    segment: Option<TrajectorySegment<Mode, N>>,
     switches: Vec<SwitchEvent<Mode, N>>,
 }
 
@@ -84,7 +84,7 @@ where
         false
     }
     fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<State<N>>) {
-        self.segment = Some(Segment { mode, dense: *dense });
+        self.segment = Some(TrajectorySegment { mode, dense: *dense });
     }
 }
 

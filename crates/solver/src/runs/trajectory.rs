@@ -5,7 +5,7 @@ use crate::method::{Dense, State};
 
 /// An accepted step with its dense output.
 #[derive(Clone, Copy, Debug)]
-pub struct Segment<Mode, const N: usize> {
+pub struct TrajectorySegment<Mode, const N: usize> {
     /// The mode in which the step was taken.
     pub mode: Mode,
     /// The state along the step.
@@ -15,7 +15,7 @@ pub struct Segment<Mode, const N: usize> {
 /// The dense output of a whole run.
 #[derive(Clone, Debug)]
 pub struct Trajectory<Mode, const N: usize> {
-    segments: Vec<Segment<Mode, N>>,
+    segments: Vec<TrajectorySegment<Mode, N>>,
     /// The end of the run, which may be behind a switch.
     end: Option<(f64, Mode, State<N>)>,
 }
@@ -29,7 +29,7 @@ impl<Mode, const N: usize> Default for Trajectory<Mode, N> {
 impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
     /// The steps, in order.
     #[must_use]
-    pub fn segments(&self) -> &[Segment<Mode, N>] {
+    pub fn segments(&self) -> &[TrajectorySegment<Mode, N>] {
         &self.segments
     }
 
@@ -42,7 +42,7 @@ impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
         {
             return Some((mode, state));
         }
-        let after = self.segments.partition_point(|Segment { dense, .. }| {
+        let after = self.segments.partition_point(|TrajectorySegment { dense, .. }| {
             if dense.size() < 0.0 { dense.start() >= s } else { dense.start() <= s }
         });
         let segment = self.segments.get(after.checked_sub(1)?)?;
@@ -110,7 +110,7 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Recorder<Mode, N> {
     }
 
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
-        self.trajectory.segments.push(Segment { mode, dense: *dense });
+        self.trajectory.segments.push(TrajectorySegment { mode, dense: *dense });
     }
 
     fn on_end(&mut self, mode: Mode, s: f64, state: &State<N>) {

@@ -1,6 +1,6 @@
 //! The equivalent control: the multipliers with which a field leads along surfaces.
 
-use crate::sliding::{MOST, Side, Sides};
+use crate::sliding::{MOST, Sides, SurfaceSide};
 use stickslip_number::Number;
 
 pub(super) type Row<T> = [T; MOST];
@@ -80,7 +80,7 @@ fn shares<T: Number>(
     let n = y.len();
     let (below, above) = fields.split_at_mut(n);
     let mut signs: Row<T> =
-        sides.sides.map(|side| T::from(if side == Side::Above { 1.0 } else { -1.0 }));
+        sides.sides.map(|side| T::from(if side == SurfaceSide::Above { 1.0 } else { -1.0 }));
     view.field(&signs[..sides.count], s, y, below);
     let base = view.rates(s, y, below);
     let (mut a, mut b) = ([[T::from(0.0); MOST]; MOST], [T::from(0.0); MOST]);
@@ -147,12 +147,12 @@ pub(super) fn guards<T: Number>(
     let shares = sliding.peek().is_some().then(|| shares(view, sides, (s, y), fields).shares);
     let mut next = 0;
     std::array::from_fn(|i| match (sides.sides[i], &shares) {
-        (Side::Sliding, Some(shares)) => {
+        (SurfaceSide::Sliding, Some(shares)) => {
             let share = shares[next];
             next += 1;
             [(-share + 1.0) * 2.0, share * 2.0]
         }
-        (Side::Below, _) => [-values[i], T::from(1.0)],
+        (SurfaceSide::Below, _) => [-values[i], T::from(1.0)],
         _ => [values[i], T::from(1.0)],
     })
 }

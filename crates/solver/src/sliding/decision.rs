@@ -13,7 +13,7 @@
 //! the one before.
 
 use crate::sliding::control::{self, Row, Square, View, minor, solved};
-use crate::sliding::{MOST, Refusal, Side, Sides};
+use crate::sliding::{MOST, Refusal, Sides, SurfaceSide};
 
 /// A number that is smaller than this, relative to its scale, has an uncertain sign.
 const SMALL: f64 = 1e-12;
@@ -22,11 +22,11 @@ const SMALL: f64 = 1e-12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cause<'a> {
     /// The run starts, and keeps these sides where it could go on in several ways.
-    Start(&'a [Option<Side>]),
+    Start(&'a [Option<SurfaceSide>]),
     /// The state has arrived at this surface from a side.
     Arrived(usize),
     /// The multiplier of this surface has reached the sign of a side.
-    Released(usize, Side),
+    Released(usize, SurfaceSide),
     /// The system itself has changed its mode or the state. The surfaces' functions had these
     /// values before.
     Moved(Row<f64>),
@@ -84,14 +84,15 @@ pub(super) fn condition(
         let distance = if arrived == Some(surface) {
             // Behind the surface, with all others as they were.
             let mut behind = problem.of(&from);
-            behind[i] = if was == Side::Below { Side::Above } else { Side::Below };
-            positive ^= is != Side::Sliding;
+            behind[i] =
+                if was == SurfaceSide::Below { SurfaceSide::Above } else { SurfaceSide::Below };
+            positive ^= is != SurfaceSide::Sliding;
             problem.outcome(behind).map_or(f64::NAN, |at| was.sign() * at.rates[i])
         } else {
             positive ^= is != was;
             let mut sliding = problem.of(&decided);
-            sliding[i] = Side::Sliding;
-            let slides = was == Side::Sliding || is == Side::Sliding;
+            sliding[i] = SurfaceSide::Sliding;
+            let slides = was == SurfaceSide::Sliding || is == SurfaceSide::Sliding;
             if !slides {
                 continue;
             }
@@ -110,12 +111,12 @@ fn came_from(view: &impl View<f64>, old: &Sides, cause: Cause<'_>, s: f64, y: &[
         let known = rounding(view, s, y, &is);
         for i in 0..from.count {
             let stays = match from.sides[i] {
-                Side::Sliding => is[i].abs() <= was[i].abs() + known[i],
+                SurfaceSide::Sliding => is[i].abs() <= was[i].abs() + known[i],
                 // A guard beyond its zero, as in a run with a prescribed itinerary, stays there.
-                side => [side, Side::of(was[i])].contains(&Side::of(is[i])),
+                side => [side, SurfaceSide::of(was[i])].contains(&SurfaceSide::of(is[i])),
             };
             if !stays {
-                from.sides[i] = Side::of(is[i]);
+                from.sides[i] = SurfaceSide::of(is[i]);
             }
         }
     }
@@ -151,7 +152,7 @@ fn surfaces_at(view: &impl View<f64>, from: &Sides, cause: Cause<'_>, s: f64, y:
     let mut on = 0;
     for i in 0..from.count {
         let soon = 4.0 * f64::EPSILON * s.abs() * rates[i].abs();
-        let is_on = from.sides[i] == Side::Sliding
+        let is_on = from.sides[i] == SurfaceSide::Sliding
             || matches!(cause, Cause::Arrived(surface) if surface == i)
             || values[i].abs() <= known[i] + if soon.is_finite() { soon } else { 0.0 };
         on |= usize::from(is_on) << i;
@@ -214,7 +215,7 @@ impl Problem {
             return Ok(Self { on, size, b, a, scaled: a, fields });
         }
         let signs = |corner: usize| {
-            let mut signs = from.sides.map(Side::sign);
+            let mut signs = from.sides.map(SurfaceSide::sign);
             for (j, &surface) in on[..size].iter().enumerate() {
                 signs[surface] = if corner >> j & 1 == 1 { 1.0 } else { -1.0 };
             }
@@ -275,14 +276,15 @@ impl Problem {
     }
 
     /// The sides of these surfaces.
-    fn of(&self, sides: &Sides) -> [Side; MOST] {
+    fn of(&self, sides: &Sides) -> [SurfaceSide; MOST] {
         self.on.map(|surface| sides.sides[surface])
     }
 
     /// Multipliers and rates for a choice of sides.
-    fn outcome(&self, choice: [Side; MOST]) -> Result<Outcome, Unsolved> {
-        let mut multipliers = choice.map(Side::sign);
-        let sliding: Vec<usize> = (0..self.size).filter(|&i| choice[i] == Side::Sliding).collect();
+    fn outcome(&self, choice: [SurfaceSide; MOST]) -> Result<Outcome, Unsolved> {
+        let mut multipliers = choice.map(SurfaceSide::sign);
+        let sliding: Vec<usize> =
+            (0..self.size).filter(|&i| choice[i] == SurfaceSide::Sliding).collect();
         let rate = |i: usize, multipliers: &Row<f64>| {
             (0..self.size).fold(self.b[i], |sum, j| sum + self.a[i][j] * multipliers[j])
         };
@@ -303,21 +305,21 @@ impl Problem {
             }
         }
         let mut rates = [0.0; MOST];
-        for i in (0..self.size).filter(|&i| choice[i] != Side::Sliding) {
+        for i in (0..self.size).filter(|&i| choice[i] != SurfaceSide::Sliding) {
             rates[i] = rate(i, &multipliers);
         }
         Ok(Outcome { multipliers, rates })
     }
 
     /// Whether the solution is attracted to the surfaces that are slid along.
-    fn attracts(&self, choice: [Side; MOST]) -> bool {
-        let slides = bits((0..self.size).filter(|&i| choice[i] == Side::Sliding));
+    fn attracts(&self, choice: [SurfaceSide; MOST]) -> bool {
+        let slides = bits((0..self.size).filter(|&i| choice[i] == SurfaceSide::Sliding));
         (1..1 << self.size).all(|rows| rows & !slides != 0 || minor(&self.scaled, rows) > SMALL)
     }
 
     /// Whether the solution goes on with this choice of sides. Sides that are `given` are not
     /// checked.
-    fn verdict(&self, choice: [Side; MOST], given: usize) -> Result<Verdict, Refusal> {
+    fn verdict(&self, choice: [SurfaceSide; MOST], given: usize) -> Result<Verdict, Refusal> {
         let at = match self.outcome(choice) {
             Ok(at) => at,
             Err(Unsolved::Never) => return Ok(Verdict::No),
@@ -326,7 +328,7 @@ impl Problem {
         let mut near = 0;
         for i in (0..self.size).filter(|i| given >> i & 1 == 0) {
             let (inside, scale) = match choice[i] {
-                Side::Sliding => (1.0 - at.multipliers[i].abs(), 1.0),
+                SurfaceSide::Sliding => (1.0 - at.multipliers[i].abs(), 1.0),
                 side => {
                     let row = self.a[i][..self.size].iter().map(|x| x.abs()).sum::<f64>();
                     (side.sign() * at.rates[i], row + self.b[i].abs())
@@ -390,7 +392,7 @@ impl Problem {
             _ => None,
         };
         // The solution keeps its sides, except at the surface at which it has arrived.
-        let kept = |choice: [Side; MOST]| {
+        let kept = |choice: [SurfaceSide; MOST]| {
             (0..self.size).all(|i| match cause {
                 Cause::Start(given) => given[self.on[i]] == Some(choice[i]),
                 _ => choice[i] == target[i] || arrived == Some(self.on[i]),
@@ -412,7 +414,7 @@ impl Problem {
             let near = bits >> i & 1 == 1;
             decided.sides[surface] = choice[i];
             decided.zeros[surface] = match choice[i] {
-                Side::Sliding => {
+                SurfaceSide::Sliding => {
                     let at = self.outcome(choice).map_or(0.0, |at| at.multipliers[i]);
                     [u8::from(near && at > 0.0), u8::from(near && at < 0.0)]
                 }
@@ -425,17 +427,17 @@ impl Problem {
 
     /// The surfaces that are slid along with multipliers beyond ±1, as in runs with a prescribed
     /// itinerary, which go on so until their exits.
-    fn held(&self, were: [Side; MOST]) -> usize {
+    fn held(&self, were: [SurfaceSide; MOST]) -> usize {
         let Ok(at) = self.outcome(were) else { return 0 };
         let beyond = |&i: &usize| at.multipliers[i].abs() > 1.0 + SMALL;
-        bits((0..self.size).filter(|&i| were[i] == Side::Sliding).filter(beyond))
+        bits((0..self.size).filter(|&i| were[i] == SurfaceSide::Sliding).filter(beyond))
     }
 
     /// All choices of sides, with those that are `given` as in `target`.
-    fn choices(&self, target: [Side; MOST], given: usize) -> Vec<[Side; MOST]> {
+    fn choices(&self, target: [SurfaceSide; MOST], given: usize) -> Vec<[SurfaceSide; MOST]> {
         let mut all = vec![target];
         for i in (0..self.size).filter(|i| given >> i & 1 == 0) {
-            let sides = [Side::Above, Side::Below, Side::Sliding];
+            let sides = [SurfaceSide::Above, SurfaceSide::Below, SurfaceSide::Sliding];
             all = all
                 .into_iter()
                 .flat_map(|choice| {
@@ -457,7 +459,7 @@ impl Problem {
         &self,
         view: &impl View<f64>,
         from: &Sides,
-        choice: [Side; MOST],
+        choice: [SurfaceSide; MOST],
         (near, given): (usize, usize),
         s: f64,
         y: &[f64],
@@ -480,13 +482,13 @@ impl Problem {
         let Ok(then) = Self::new(view, from, on, s + later, &moved) else { return false };
         (0..self.size).filter(|i| near >> i & 1 == 1 && given >> i & 1 == 0).all(|i| {
             let mut sliding = choice;
-            sliding[i] = Side::Sliding;
+            sliding[i] = SurfaceSide::Sliding;
             let (Ok(now), Ok(then)) = (self.outcome(sliding), then.outcome(sliding)) else {
                 return false;
             };
             let (now, then) = (now.multipliers[i], then.multipliers[i]);
             match choice[i] {
-                Side::Sliding => then.abs() <= now.abs(),
+                SurfaceSide::Sliding => then.abs() <= now.abs(),
                 side => side.sign() * then > side.sign() * now,
             }
         })
@@ -496,7 +498,7 @@ impl Problem {
     fn move_onto(&self, view: &impl View<f64>, from: &Sides, to: &Sides, s: f64, y: &mut [f64]) {
         let slides = |i: &usize| {
             let surface = self.on[*i];
-            from.sides[surface] == Side::Sliding || to.sides[surface] == Side::Sliding
+            from.sides[surface] == SurfaceSide::Sliding || to.sides[surface] == SurfaceSide::Sliding
         };
         let rows: Vec<usize> = (0..self.size).filter(slides).collect();
         if rows.is_empty() || minor(&self.scaled, bits(rows.iter().copied())).abs() <= SMALL {

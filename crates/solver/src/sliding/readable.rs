@@ -4,10 +4,10 @@ use std::fmt;
 
 use crate::hybrid::{Guard, ReadableSystem, Schedule};
 use crate::method::State;
-use crate::sensitivity::{Change, Differentiable, along};
+use crate::sensitivity::{Differentiable, Variation, along};
 use crate::sliding::control::{self, Row, View};
 use crate::sliding::decision::{Cause, condition, decide};
-use crate::sliding::sides::{Refusal, Side, SlidingMode};
+use crate::sliding::sides::{Refusal, SlidingMode, SurfaceSide};
 use crate::sliding::{MOST, cause_of, guards_of, start};
 use stickslip_number::{Dual, Number};
 
@@ -146,7 +146,7 @@ impl<S, const K: usize, const G: usize> Filippov<S, K, G> {
     pub fn mode_from<const N: usize>(
         &self,
         own: S::Mode,
-        sides: [Side; K],
+        sides: [SurfaceSide; K],
         s: f64,
         y: &State<N>,
     ) -> Result<SlidingMode<S::Mode>, Refusal>
@@ -306,12 +306,12 @@ impl<S, const N: usize, const K: usize, const G: usize> Differentiable<N, G> for
 where
     S: Switched<N, K, G>,
 {
-    fn field_change(&self, mode: Self::Mode, s: f64, y: &State<N>, by: &Change<N>) -> State<N> {
+    fn field_change(&self, mode: Self::Mode, s: f64, y: &State<N>, by: &Variation<N>) -> State<N> {
         let (s, y) = along(s, y, by);
         self.field_of(mode, s, &y).map(|slope| slope.eps).into()
     }
 
-    fn guard_changes(&self, mode: Self::Mode, s: f64, y: &State<N>, by: &Change<N>) -> [f64; G] {
+    fn guard_changes(&self, mode: Self::Mode, s: f64, y: &State<N>, by: &Variation<N>) -> [f64; G] {
         let (s, y) = along(s, y, by);
         self.guards_in(mode, s, &y).map(|value| value.eps)
     }
@@ -322,7 +322,7 @@ where
         guard: usize,
         s: f64,
         y: &State<N>,
-        by: &Change<N>,
+        by: &Variation<N>,
     ) -> State<N> {
         // On a surface, to move onto it changes nothing.
         let (s, y) = along(s, y, by);

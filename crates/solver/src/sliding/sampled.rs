@@ -8,7 +8,7 @@ use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::State;
 use crate::sliding::control::{self, Row, View};
 use crate::sliding::decision::{Cause, condition, decide};
-use crate::sliding::sides::{Refusal, Side, SlidingMode};
+use crate::sliding::sides::{Refusal, SlidingMode, SurfaceSide};
 use crate::sliding::{MOST, cause_of, guards_of, start};
 
 /// A system whose field depends on the signs of up to 4 surfaces, and whose functions are black
@@ -234,7 +234,7 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
     pub fn mode_from(
         &self,
         own: S::Mode,
-        sides: &[Side],
+        sides: &[SurfaceSide],
         s: f64,
         y: &[f64],
     ) -> Result<SlidingMode<S::Mode>, Refusal> {

@@ -6,7 +6,7 @@ use crate::sliding::MOST;
 
 /// Where a state is with respect to a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum SurfaceSide {
     /// Where the surface's function is positive; its sign is +1.
     Above,
     /// Where the surface's function is negative; its sign is −1.
@@ -15,7 +15,7 @@ pub enum Side {
     Sliding,
 }
 
-impl Side {
+impl SurfaceSide {
     /// The sign of the side, 0 while it slides.
     pub(super) fn sign(self) -> f64 {
         match self {
@@ -62,7 +62,7 @@ pub enum Refusal {
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Sides {
     pub(super) count: usize,
-    pub(super) sides: [Side; MOST],
+    pub(super) sides: [SurfaceSide; MOST],
     /// The orders of the zeros from which the two guards of each surface start.
     pub(super) zeros: [[u8; 2]; MOST],
     /// Whether another way to go on was left out.
@@ -72,7 +72,7 @@ pub(crate) struct Sides {
 
 impl Sides {
     /// These sides of the first `count` surfaces, with guards that do not start from zero.
-    pub(super) fn new(count: usize, sides: [Side; MOST]) -> Self {
+    pub(super) fn new(count: usize, sides: [SurfaceSide; MOST]) -> Self {
         Self { count, sides, zeros: [[0; 2]; MOST], unique: true, refusal: None }
     }
 
@@ -81,13 +81,13 @@ impl Sides {
         Self { refusal: Some(refusal), zeros: [[0; 2]; MOST], ..self }
     }
 
-    pub(super) fn all(&self) -> &[Side] {
+    pub(super) fn all(&self) -> &[SurfaceSide] {
         &self.sides[..self.count]
     }
 
     /// The surfaces along which the state slides.
     pub(super) fn sliding(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.count).filter(|&i| self.sides[i] == Side::Sliding)
+        (0..self.count).filter(|&i| self.sides[i] == SurfaceSide::Sliding)
     }
 }
 
@@ -104,8 +104,8 @@ pub struct SlidingMode<Mode> {
 impl<Mode> SlidingMode<Mode> {
     /// A mode with these sides of up to 4 surfaces, from which a transition leads on: for systems
     /// that keep modes of their own.
-    pub fn at(own: Mode, sides: &[Side]) -> Self {
-        let mut all = [Side::Above; MOST];
+    pub fn at(own: Mode, sides: &[SurfaceSide]) -> Self {
+        let mut all = [SurfaceSide::Above; MOST];
         all.iter_mut().zip(sides).for_each(|(all, side)| *all = *side);
         Self { own, surfaces: Sides::new(sides.len().min(MOST), all) }
     }
@@ -115,13 +115,13 @@ impl<Mode> SlidingMode<Mode> {
     #[must_use]
     pub fn is_released(&self, surface: usize) -> bool {
         let released = |zeros: &[u8; 2]| zeros[0] > 1;
-        self.sides().get(surface).is_some_and(|&side| side != Side::Sliding)
+        self.sides().get(surface).is_some_and(|&side| side != SurfaceSide::Sliding)
             && self.surfaces.zeros.get(surface).is_some_and(released)
     }
 
     /// The side of each surface.
     #[must_use]
-    pub fn sides(&self) -> &[Side] {
+    pub fn sides(&self) -> &[SurfaceSide] {
         self.surfaces.all()
     }
 
@@ -133,7 +133,7 @@ impl<Mode> SlidingMode<Mode> {
 
     /// A mode from which nothing goes on: the right-hand side is NaN.
     pub fn refused(own: Mode, refusal: Refusal) -> Self {
-        let surfaces = Sides::new(0, [Side::Above; MOST]).refused(refusal);
+        let surfaces = Sides::new(0, [SurfaceSide::Above; MOST]).refused(refusal);
         Self { own, surfaces }
     }
 

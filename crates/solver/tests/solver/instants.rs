@@ -24,8 +24,8 @@ mod planted;
 
 use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicStart, run_dynamic};
 use stickslip_solver::{
-    Dop853, Dopri5, Method, Observer, Options, Outcome, Preempted, RunError, Start, State,
-    SwitchEvent, run,
+    Dop853, Dopri5, Method, Observer, Options, Outcome, RunError, Start, State, SwitchEvent,
+    hybrid::Preempted, run,
 };
 
 use oracle::{Act, Plan};

@@ -15,7 +15,7 @@ mod random;
 mod several_surfaces;
 
 use stickslip_solver::sliding::{
-    Filippov, Refusal, SampledFilippov, Side, SlidingMode, Switched, SwitchedDynamic,
+    Filippov, Refusal, SampledFilippov, SlidingMode, SurfaceSide, Switched, SwitchedDynamic,
 };
 use stickslip_solver::{Dop853, Number, Options, Run, RunError, Start, State, SwitchEvent};
 
@@ -123,7 +123,7 @@ pub fn switches<const N: usize, const K: usize, const G: usize>(
     system: &Relays<N, K>,
     y: [f64; N],
     end: f64,
-) -> (Vec<(f64, Vec<Side>)>, State<N>) {
+) -> (Vec<(f64, Vec<SurfaceSide>)>, State<N>) {
     let readable = Filippov::<_, K, G>(system.clone());
     let mode = readable.mode((), 0.0, &State::from(y)).unwrap();
     let (ended, events) = ran::<_, N, K, G>(&readable, mode, (0.0, y), end);

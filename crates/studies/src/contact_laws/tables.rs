@@ -1,31 +1,31 @@
 //! The laws as a table.
 
-use stickslip_model::{Damping, End};
+use stickslip_model::{ContactEnd, Damping};
 
 use super::ContactLaws;
 use super::law::LawOnPlane;
-use crate::study::{Cell, Column, Table};
+use crate::study::{Cell, StudyColumn, StudyTable};
 
 /// The name of the table.
 pub const LAWS: &str = "contact_laws";
 
-const COLUMNS: [Column; 10] = [
-    Column::headed("names", "law", "the names under which particle codes have the law"),
-    Column::headed("equations", "equations", "its equations in scaled units"),
-    Column::headed("ends", "ends at", "where the contact ends"),
-    Column::headed("starts", "starts in", "the first phases of the damped collisions"),
-    Column::headed("parity", "switches", "the parity of the numbers of switches, damped"),
-    Column::headed("spring", "spring", "what becomes of the energy in the spring"),
-    Column::headed("largest", "largest |ε_t|", "the largest |ε_t| without damping"),
-    Column::headed("at_kappa", "at κ", "κ of the largest |ε_t|"),
-    Column::headed("at_psi", "at ψ", "ψ of the largest |ε_t|"),
-    Column::headed("largest_damped", "damped", "the largest |ε_t| with damping"),
+const COLUMNS: [StudyColumn; 10] = [
+    StudyColumn::headed("names", "law", "the names under which particle codes have the law"),
+    StudyColumn::headed("equations", "equations", "its equations in scaled units"),
+    StudyColumn::headed("ends", "ends at", "where the contact ends"),
+    StudyColumn::headed("starts", "starts in", "the first phases of the damped collisions"),
+    StudyColumn::headed("parity", "switches", "the parity of the numbers of switches, damped"),
+    StudyColumn::headed("spring", "spring", "what becomes of the energy in the spring"),
+    StudyColumn::headed("largest", "largest |ε_t|", "the largest |ε_t| without damping"),
+    StudyColumn::headed("at_kappa", "at κ", "κ of the largest |ε_t|"),
+    StudyColumn::headed("at_psi", "at ψ", "ψ of the largest |ε_t|"),
+    StudyColumn::headed("largest_damped", "damped", "the largest |ε_t| with damping"),
 ];
 
 impl ContactLaws {
-    pub(super) fn table(&self) -> Table {
+    pub(super) fn table(&self) -> StudyTable {
         let (kappa, psi, cells) = (self.settings.kappa, self.settings.psi, self.settings.cells);
-        Table {
+        StudyTable {
             name: LAWS,
             title: format!(
                 "The laws, from {cells} × {cells} collisions each with κ in {:?} … {:?} and ψ in \
@@ -43,9 +43,9 @@ fn row(law: &LawOnPlane) -> Vec<Cell> {
     let (largest, [kappa, psi]) = law.undamped.largest;
     let attracts = terms.damping != Damping::None && !terms.limit_damping;
     let ends = match terms.end {
-        End::Force => "F = 0",
-        End::Overlap if attracts => "x = 0, attracting",
-        End::Overlap => "x = 0",
+        ContactEnd::Force => "F = 0",
+        ContactEnd::Overlap if attracts => "x = 0, attracting",
+        ContactEnd::Overlap => "x = 0",
     };
     let names: Vec<_> = law.named.names.iter().map(|name| format!("`{name}`")).collect();
     vec![

@@ -5,8 +5,8 @@ use stickslip_solver::method::Order;
 
 use super::Convergence;
 use super::collisions::engine;
-use super::measure::Coordinates;
-use super::series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
+use super::measure::Formulation;
+use super::series::{Control, ErrorRow, ErrorSeries, SeriesScheme, SwitchHandling, fitted};
 
 /// Accuracies whose work is reported.
 const TARGETS: [f64; 2] = [1e-6, 1e-10];
@@ -19,7 +19,7 @@ impl Convergence {
     pub(super) fn findings(&self) -> Vec<String> {
         let mut findings = vec![self.result(), self.measured()];
         for switches in [SwitchHandling::Located, SwitchHandling::AtStepEnds] {
-            for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+            for coordinates in [Formulation::Regularized, Formulation::PlainTime] {
                 findings.push(self.orders_in(switches, coordinates));
             }
         }
@@ -32,7 +32,7 @@ impl Convergence {
 
     /// The main result.
     pub(super) fn result(&self) -> String {
-        let smooth = (Control::Step, SwitchHandling::Located, Coordinates::Regularized);
+        let smooth = (Control::Step, SwitchHandling::Located, Formulation::Regularized);
         let fitted = self.both(smooth.0, smooth.1, smooth.2).map(|series| series.velocity);
         let [Some(dopri5), Some(dop853)] = fitted else {
             return "There is no range of steps over which an order can be fitted.".to_owned();
@@ -50,7 +50,7 @@ impl Convergence {
             dopri5.order,
             dop853.order
         );
-        let over = [Coordinates::Regularized, Coordinates::PlainTime]
+        let over = [Formulation::Regularized, Formulation::PlainTime]
             .map(|coordinates| self.both(Control::Step, SwitchHandling::AtStepEnds, coordinates));
         let over = over.as_flattened().iter();
         let over = over.flat_map(|series| [series.velocity, series.switch_time]).flatten();
@@ -87,7 +87,7 @@ impl Convergence {
     fn agreement(&self) -> String {
         let error = |row: &ErrorRow| row.errors.velocity.root_mean_square;
         let [_, dop853] =
-            self.both(Control::Step, SwitchHandling::Located, Coordinates::Regularized);
+            self.both(Control::Step, SwitchHandling::Located, Formulation::Regularized);
         let rows = dop853.rows.iter().filter(|row| row.errors.comparable());
         let closest = rows.min_by(|a, b| error(a).total_cmp(&error(b)));
         match closest {
@@ -101,7 +101,7 @@ impl Convergence {
     }
 
     /// Both pairs in fixed steps.
-    fn orders_in(&self, switches: SwitchHandling, coordinates: Coordinates) -> String {
+    fn orders_in(&self, switches: SwitchHandling, coordinates: Formulation) -> String {
         let ways = match switches {
             SwitchHandling::Located => "with switches located",
             SwitchHandling::AtStepEnds => "with steps that run over switches",
@@ -115,16 +115,16 @@ impl Convergence {
             )
         });
         let expected = match (switches, coordinates) {
-            (SwitchHandling::Located, Coordinates::Regularized) => {
+            (SwitchHandling::Located, Formulation::Regularized) => {
                 "The methods have orders 5 and 8: everything is smooth between switches, and steps \
                  end at switches"
             }
-            (SwitchHandling::Located, Coordinates::PlainTime) if self.is_damped() => {
+            (SwitchHandling::Located, Formulation::PlainTime) if self.is_damped() => {
                 "Both are expected to have order 3/2 once steps are shorter than the stick phase with \
                  which contact starts: the force grows as √t there, and the first step errs by \
                  h^(3/2)"
             }
-            (SwitchHandling::Located, Coordinates::PlainTime) => {
+            (SwitchHandling::Located, Formulation::PlainTime) => {
                 "Both are expected to have order 5/2: the force x^(3/2) goes as t^(3/2) at both ends \
                  of contact, and steps there err by h^(5/2)"
             }
@@ -137,8 +137,8 @@ impl Convergence {
         format!(
             "In {} {ways} the fitted orders are: {}. {expected}.",
             match coordinates {
-                Coordinates::Regularized => "regularised coordinates",
-                Coordinates::PlainTime => "plain time",
+                Formulation::Regularized => "regularised coordinates",
+                Formulation::PlainTime => "plain time",
             },
             fitted.join("; "),
         )
@@ -148,7 +148,7 @@ impl Convergence {
     fn few_steps(&self) -> Option<String> {
         let contact_time = self.references.first()?.contact_time;
         let [_, series] =
-            self.both(Control::Step, SwitchHandling::AtStepEnds, Coordinates::PlainTime);
+            self.both(Control::Step, SwitchHandling::AtStepEnds, Formulation::PlainTime);
         let ErrorRow { value, errors, .. } =
             series.rows.iter().find(|row| row.value <= contact_time / FEW_STEPS)?;
         Some(format!(
@@ -166,7 +166,7 @@ impl Convergence {
 
     /// Error against tolerance.
     fn tolerances(&self) -> String {
-        let all = [Coordinates::Regularized, Coordinates::PlainTime].map(|coordinates| {
+        let all = [Formulation::Regularized, Formulation::PlainTime].map(|coordinates| {
             self.both(Control::Tolerance, SwitchHandling::Located, coordinates).map(|series| {
                 let Some(fit) = series.velocity else {
                     return format!("{} without a range to fit", name(series));
@@ -197,9 +197,9 @@ impl Convergence {
     /// Work for an accuracy.
     fn cost(&self, target: f64) -> String {
         let ways = [
-            (Control::Tolerance, SwitchHandling::Located, Coordinates::Regularized),
-            (Control::Tolerance, SwitchHandling::Located, Coordinates::PlainTime),
-            (Control::Step, SwitchHandling::AtStepEnds, Coordinates::PlainTime),
+            (Control::Tolerance, SwitchHandling::Located, Formulation::Regularized),
+            (Control::Tolerance, SwitchHandling::Located, Formulation::PlainTime),
+            (Control::Step, SwitchHandling::AtStepEnds, Formulation::PlainTime),
         ];
         let costs = ways.map(|(control, switches, coordinates)| {
             self.both(control, switches, coordinates).map(|series| {
@@ -246,10 +246,10 @@ impl Convergence {
         &self,
         control: Control,
         switches: SwitchHandling,
-        coordinates: Coordinates,
+        coordinates: Formulation,
     ) -> [&ErrorSeries; 2] {
         EmbeddedPair::ALL.map(|pair| {
-            let scheme = Scheme { pair, coordinates, switches, control };
+            let scheme = SeriesScheme { pair, coordinates, switches, control };
             // All schemes are measured.
             self.series.iter().find(|series| series.scheme == scheme).unwrap()
         })

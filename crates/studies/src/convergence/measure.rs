@@ -19,7 +19,7 @@ use super::plain_time::{self, PlainTime};
 
 /// Variables in which a collision is integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coordinates {
+pub enum Formulation {
     /// The coordinates of [`stickslip_model::regularized`], in which everything is smooth.
     Regularized,
     /// The coordinates of [`super::plain_time`], in which the ends of contact are not smooth.
@@ -28,7 +28,7 @@ pub enum Coordinates {
 
 /// How an integration treats switches.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Switching {
+pub enum LocationSettings {
     /// Each switch ends a step: [`run`](stickslip_solver::run).
     Located {
         /// Step sizes or tolerances.
@@ -112,20 +112,20 @@ pub fn reference(contact: Contact) -> Result<Collision, CollisionError> {
 pub fn integrate(
     pair: EmbeddedPair,
     contact: Contact,
-    coordinates: Coordinates,
-    switching: &Switching,
+    coordinates: Formulation,
+    switching: &LocationSettings,
 ) -> Result<Approximation, CollisionError> {
     contact.require_paper("the convergence")?;
     let phase = Phase::first(&contact);
     let mut switches = SwitchRecord { found: Vec::new(), clock: coordinates, elapsed: 0.0 };
     let (outcome, final_velocity, statistics) = match coordinates {
-        Coordinates::Regularized => {
+        Formulation::Regularized => {
             let system = Regularized::new(contact);
             let start = Start { mode: phase, s: 0.0, state: system.start() };
             let run = follow(pair, &system, start, switching, &mut switches)?;
             (run.outcome, system.velocity(&run.state), run.statistics)
         }
-        Coordinates::PlainTime => {
+        Formulation::PlainTime => {
             let system = PlainTime::new(contact);
             let start = Start { mode: phase, s: 0.0, state: system.start() };
             let run = follow(pair, &system, start, switching, &mut switches)?;
@@ -192,8 +192,8 @@ impl Errors {
 pub fn measure(
     pair: EmbeddedPair,
     references: &[Collision],
-    coordinates: Coordinates,
-    switching: &Switching,
+    coordinates: Formulation,
+    switching: &LocationSettings,
 ) -> Errors {
     let (mut failed, mut other_switches, mut right_hand_sides) = (0, 0, 0);
     let (mut velocities, mut times) = (Vec::new(), Vec::new());
@@ -224,7 +224,7 @@ fn follow<S, const N: usize, const G: usize>(
     pair: EmbeddedPair,
     system: &S,
     start: Start<Phase, N>,
-    switching: &Switching,
+    switching: &LocationSettings,
     switches: &mut SwitchRecord,
 ) -> Result<Run<Phase, N>, RunError>
 where
@@ -232,10 +232,10 @@ where
     SwitchRecord: Observer<Phase, N>,
 {
     match *switching {
-        Switching::Located { options } => {
+        LocationSettings::Located { options } => {
             run_with(pair, system, start, f64::INFINITY, &options, switches)
         }
-        Switching::AtStepEnds { step_size, max_steps } => {
+        LocationSettings::AtStepEnds { step_size, max_steps } => {
             let (end, most) = (f64::INFINITY, max_steps);
             match pair {
                 EmbeddedPair::Dopri5 => {
@@ -252,7 +252,7 @@ where
 /// Records switches with their times.
 struct SwitchRecord {
     found: Vec<(f64, Regime, Side)>,
-    clock: Coordinates,
+    clock: Formulation,
     /// The time of the last switch.
     elapsed: f64,
 }
@@ -261,8 +261,8 @@ impl<const N: usize> Observer<Phase, N> for SwitchRecord {
     fn on_switch(&mut self, event: &SwitchEvent<Phase, N>) {
         match self.clock {
             // Time runs from 0 in every phase.
-            Coordinates::Regularized => self.elapsed += event.before[regularized::T],
-            Coordinates::PlainTime => self.elapsed = event.s,
+            Formulation::Regularized => self.elapsed += event.before[regularized::T],
+            Formulation::PlainTime => self.elapsed = event.s,
         }
         if event.guard != regularized::END {
             self.found.push((self.elapsed, event.to.regime, event.to.side));

@@ -11,7 +11,7 @@
 //! 1.5. [`stickslip_model::regularized`] is the same collision without that defect. Only studies of
 //! convergence ([`super::measure()`]) should use this one.
 
-use stickslip_model::regularized::{Phase, Progress};
+use stickslip_model::regularized::{Phase, PhaseProgress};
 use stickslip_model::{Contact, Regime};
 use stickslip_solver::{Direction, Guard, HybridSystem, State};
 
@@ -64,10 +64,10 @@ impl HybridSystem<STATE, 3> for PlainTime {
         let end = Guard::new(Direction::Below).terminal();
         let leave = Guard::new(Direction::Below);
         match (phase.regime, phase.progress) {
-            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave, Guard::OFF],
+            (Regime::Slip, PhaseProgress::Touched) => [end.from_zero(1), leave, Guard::OFF],
             (Regime::Slip, _) => [end, leave, Guard::OFF],
-            (Regime::Stick, Progress::Touched) => [end, leave.from_zero(1), Guard::OFF],
-            (Regime::Stick, Progress::Settled) => [end, leave, leave],
+            (Regime::Stick, PhaseProgress::Touched) => [end, leave.from_zero(1), Guard::OFF],
+            (Regime::Stick, PhaseProgress::Settled) => [end, leave, leave],
             (Regime::Stick, _) => [end, leave.from_zero(2), leave],
         }
     }
@@ -85,7 +85,7 @@ impl HybridSystem<STATE, 3> for PlainTime {
             }
             (Regime::Slip, _) => [end, kappa * sign * y[W] - 1.5 * x.max(0.0).sqrt() * v, 1.0],
             // The gaps on both sides multiplied, which is smooth at x = 0 as each of them is not.
-            (Regime::Stick, Progress::Touched) => [end, x * end * end - pull * pull, 1.0],
+            (Regime::Stick, PhaseProgress::Touched) => [end, x * end * end - pull * pull, 1.0],
             (Regime::Stick, _) => [end, force - pull, force + pull],
         }
     }
@@ -97,7 +97,7 @@ impl HybridSystem<STATE, 3> for PlainTime {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let first_stick = phase.regime == Regime::Stick && phase.progress == Progress::Touched;
+        let first_stick = phase.regime == Regime::Stick && phase.progress == PhaseProgress::Touched;
         let other = if first_stick { y[Y] < 0.0 } else { guard == OTHER_SIDE };
         let next = phase.after(other);
         let mut y = *y;

@@ -8,7 +8,7 @@ use stickslip_model::Collision;
 use stickslip_solver::method::{Order, fit_order};
 use stickslip_solver::{EmbeddedPair, Options, StepSize};
 
-use super::measure::{Coordinates, Errors, Spread, Switching, measure};
+use super::measure::{Errors, Formulation, LocationSettings, Spread, measure};
 
 /// Steps in an octave.
 const PER_OCTAVE: i32 = 4;
@@ -46,11 +46,11 @@ pub enum Control {
 
 /// A way to integrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scheme {
+pub struct SeriesScheme {
     /// The method.
     pub pair: EmbeddedPair,
     /// The variables.
-    pub coordinates: Coordinates,
+    pub coordinates: Formulation,
     /// What happens to switches.
     pub switches: SwitchHandling,
     /// What decides how fine the steps are.
@@ -77,7 +77,7 @@ pub fn fitted(order: &Order) -> RangeInclusive<f64> {
 #[derive(Clone, Debug)]
 pub struct ErrorSeries {
     /// The way to integrate.
-    pub scheme: Scheme,
+    pub scheme: SeriesScheme,
     /// The errors at each step or tolerance.
     pub rows: Vec<ErrorRow>,
     /// The order of the error of the final velocity, where there is a range to fit.
@@ -96,7 +96,7 @@ impl Control {
     }
 }
 
-impl Scheme {
+impl SeriesScheme {
     /// All schemes that are compared. Without located switches no error estimate could control the
     /// steps.
     pub(super) fn all() -> Vec<Self> {
@@ -107,7 +107,7 @@ impl Scheme {
         ];
         let mut schemes = Vec::new();
         for (control, switches) in ways {
-            for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+            for coordinates in [Formulation::Regularized, Formulation::PlainTime] {
                 let pairs = EmbeddedPair::ALL;
                 schemes.extend(pairs.map(|pair| Self { pair, coordinates, switches, control }));
             }
@@ -118,8 +118,8 @@ impl Scheme {
     /// The names of the method, of the coordinates and of what happens to switches.
     pub fn names(self) -> [&'static str; 3] {
         let coordinates = match self.coordinates {
-            Coordinates::Regularized => "regularised",
-            Coordinates::PlainTime => "plain time",
+            Formulation::Regularized => "regularised",
+            Formulation::PlainTime => "plain time",
         };
         let switches = match self.switches {
             SwitchHandling::Located => "located",
@@ -136,7 +136,7 @@ impl Scheme {
         }
         let coarsest = coarsest(references);
         let at_rounding_early =
-            (EmbeddedPair::Dop853, Coordinates::Regularized, SwitchHandling::Located);
+            (EmbeddedPair::Dop853, Formulation::Regularized, SwitchHandling::Located);
         let early = (self.pair, self.coordinates, self.switches) == at_rounding_early;
         let octaves = if early { 6 } else { 10 };
         (0..=octaves * PER_OCTAVE)
@@ -144,7 +144,7 @@ impl Scheme {
             .collect()
     }
 
-    fn switching(self, value: f64, coarsest: f64) -> Switching {
+    fn switching(self, value: f64, coarsest: f64) -> LocationSettings {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 1e9")]
         let max_steps = match self.control {
             Control::Step => LONGEST / value,
@@ -153,12 +153,12 @@ impl Scheme {
         let options = Options { max_steps, ..Options::default() };
         match (self.switches, self.control) {
             (SwitchHandling::AtStepEnds, _) => {
-                Switching::AtStepEnds { step_size: value, max_steps }
+                LocationSettings::AtStepEnds { step_size: value, max_steps }
             }
-            (SwitchHandling::Located, Control::Step) => Switching::Located {
+            (SwitchHandling::Located, Control::Step) => LocationSettings::Located {
                 options: Options { step_size: StepSize::Fixed(value), ..options },
             },
-            (SwitchHandling::Located, Control::Tolerance) => Switching::Located {
+            (SwitchHandling::Located, Control::Tolerance) => LocationSettings::Located {
                 options: Options { rtol: value, atol: value, first_step: Some(0.1), ..options },
             },
         }
@@ -184,7 +184,7 @@ fn coarsest(references: &[Collision]) -> f64 {
 }
 
 impl ErrorRow {
-    pub(super) fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
+    pub(super) fn measure(scheme: SeriesScheme, value: f64, references: &[Collision]) -> Self {
         let switching = scheme.switching(value, coarsest(references));
         let once = || measure(scheme.pair, references, scheme.coordinates, &switching);
         let start = Instant::now();
@@ -215,7 +215,7 @@ impl ErrorRow {
 }
 
 impl ErrorSeries {
-    pub(super) fn new(scheme: Scheme, rows: Vec<ErrorRow>) -> Self {
+    pub(super) fn new(scheme: SeriesScheme, rows: Vec<ErrorRow>) -> Self {
         let fit = |error: fn(&Errors) -> Spread| {
             let errors = rows.iter().map(|ErrorRow { value, errors, .. }| {
                 let error = error(errors).root_mean_square;

@@ -4,8 +4,8 @@ use stickslip_solver::EmbeddedPair;
 
 use super::Convergence;
 use super::measure::Errors;
-use super::series::{Control, ErrorRow, ErrorSeries, Scheme};
-use crate::study::{Cell, Column, Table};
+use super::series::{Control, ErrorRow, ErrorSeries, SeriesScheme};
+use crate::study::{Cell, StudyColumn, StudyTable};
 
 /// The table of fitted orders.
 pub const ORDERS: &str = "convergence_orders";
@@ -13,7 +13,7 @@ pub const ORDERS: &str = "convergence_orders";
 pub const TIMES: &str = "convergence_time";
 
 impl Convergence {
-    pub(super) fn tables(&self) -> Vec<Table> {
+    pub(super) fn tables(&self) -> Vec<StudyTable> {
         vec![
             self.orders(),
             self.errors(Control::Step),
@@ -27,7 +27,7 @@ impl Convergence {
         self.series.iter().filter(move |series| series.scheme.control == control)
     }
 
-    fn orders(&self) -> Table {
+    fn orders(&self) -> StudyTable {
         let mut rows = Vec::new();
         for series in &self.series {
             let orders =
@@ -42,7 +42,7 @@ impl Convergence {
                 rows.push(row);
             }
         }
-        Table {
+        StudyTable {
             name: ORDERS,
             title: "Fitted orders".to_owned(),
             columns: [&SCHEME[..], &FITTED].concat(),
@@ -50,11 +50,11 @@ impl Convergence {
         }
     }
 
-    fn errors(&self, control: Control) -> Table {
+    fn errors(&self, control: Control) -> StudyTable {
         let (name, value, title) = match control {
             Control::Step => (
                 "convergence_steps",
-                Column::new(
+                StudyColumn::new(
                     "step",
                     "of s in regularised coordinates, of scaled time in plain time",
                 ),
@@ -62,7 +62,7 @@ impl Convergence {
             ),
             Control::Tolerance => (
                 "convergence_tolerances",
-                Column::new("tolerance", "relative and absolute"),
+                StudyColumn::new("tolerance", "relative and absolute"),
                 "Errors and work at tolerances",
             ),
         };
@@ -79,7 +79,7 @@ impl Convergence {
                 row
             })
         });
-        Table {
+        StudyTable {
             name,
             title: title.to_owned(),
             columns: [&SCHEME[..], &[value], &ERRORS].concat(),
@@ -92,7 +92,7 @@ impl Convergence {
         errors.right_hand_sides as f64 / (self.references.len() - errors.failed) as f64
     }
 
-    fn collisions(&self) -> Table {
+    fn collisions(&self) -> StudyTable {
         let rows = self.accuracies.iter().flat_map(|accuracy| {
             let collision = &accuracy.reference;
             EmbeddedPair::ALL.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
@@ -109,7 +109,7 @@ impl Convergence {
                 row
             })
         });
-        Table {
+        StudyTable {
             name: "convergence_collisions",
             title: "Each collision as `collide` computes it".to_owned(),
             columns: COLLISIONS.to_vec(),
@@ -117,7 +117,7 @@ impl Convergence {
         }
     }
 
-    fn times(&self) -> Table {
+    fn times(&self) -> StudyTable {
         let rows = self.series.iter().flat_map(|series| {
             series.rows.iter().map(|row| {
                 let mut cells = scheme(series.scheme);
@@ -127,7 +127,7 @@ impl Convergence {
                 cells
             })
         });
-        Table {
+        StudyTable {
             name: TIMES,
             title: "Measured times, not the same in another run".to_owned(),
             columns: [&SCHEME[..], &MEASURED_TIME].concat(),
@@ -137,69 +137,84 @@ impl Convergence {
 }
 
 /// The columns of [`scheme`].
-const SCHEME: [Column; 3] = [
-    Column::headed("method", "method", "Dormand–Prince pair"),
-    Column::headed(
+const SCHEME: [StudyColumn; 3] = [
+    StudyColumn::headed("method", "method", "Dormand–Prince pair"),
+    StudyColumn::headed(
         "coordinates",
         "coordinates",
         "coordinates in which the equations are integrated",
     ),
-    Column::headed("switches", "switches", "located, or taking effect where steps happen to end"),
+    StudyColumn::headed(
+        "switches",
+        "switches",
+        "located, or taking effect where steps happen to end",
+    ),
 ];
 
-fn scheme(scheme: Scheme) -> Vec<Cell> {
+fn scheme(scheme: SeriesScheme) -> Vec<Cell> {
     scheme.names().map(Cell::from).into()
 }
 
-const FITTED: [Column; 8] = [
-    Column::headed("control", "made finer", "what is made finer: the step, or the tolerance"),
-    Column::headed("quantity", "error of", "the quantity whose root mean square error is fitted"),
-    Column::headed("order", "order", "slope of ln error against ln step or ln tolerance"),
-    Column::headed(
+const FITTED: [StudyColumn; 8] = [
+    StudyColumn::headed("control", "made finer", "what is made finer: the step, or the tolerance"),
+    StudyColumn::headed(
+        "quantity",
+        "error of",
+        "the quantity whose root mean square error is fitted",
+    ),
+    StudyColumn::headed("order", "order", "slope of ln error against ln step or ln tolerance"),
+    StudyColumn::headed(
         "standard_error",
         "std. error",
         "standard error of the order, from the scatter about the line",
     ),
-    Column::headed(
+    StudyColumn::headed(
         "drift",
         "drift",
         "order over the finer half of the points minus that over the coarser half",
     ),
-    Column::headed("coarsest", "coarsest", "step in s or t, or tolerance, at which the fit begins"),
-    Column::headed("finest", "finest", "step in s or t, or tolerance, at which the fit ends"),
-    Column::headed("points", "points", "number of fitted points"),
+    StudyColumn::headed(
+        "coarsest",
+        "coarsest",
+        "step in s or t, or tolerance, at which the fit begins",
+    ),
+    StudyColumn::headed("finest", "finest", "step in s or t, or tolerance, at which the fit ends"),
+    StudyColumn::headed("points", "points", "number of fitted points"),
 ];
 
-const ERRORS: [Column; 7] = [
-    Column::new("failed", "collisions that could not be integrated"),
-    Column::new("other_switches", "collisions with other switches than the reference"),
-    Column::new("velocity_error", "root mean square error of the final reduced velocity w"),
-    Column::new("velocity_error_largest", "largest error of the final reduced velocity w"),
-    Column::new("switch_time_error", "root mean square error of switch times, in scaled time"),
-    Column::new("switch_time_error_largest", "largest error of a switch time"),
-    Column::new("right_hand_sides", "evaluations of the right-hand side per collision"),
+const ERRORS: [StudyColumn; 7] = [
+    StudyColumn::new("failed", "collisions that could not be integrated"),
+    StudyColumn::new("other_switches", "collisions with other switches than the reference"),
+    StudyColumn::new("velocity_error", "root mean square error of the final reduced velocity w"),
+    StudyColumn::new("velocity_error_largest", "largest error of the final reduced velocity w"),
+    StudyColumn::new("switch_time_error", "root mean square error of switch times, in scaled time"),
+    StudyColumn::new("switch_time_error_largest", "largest error of a switch time"),
+    StudyColumn::new("right_hand_sides", "evaluations of the right-hand side per collision"),
 ];
 
-const COLLISIONS: [Column; 11] = [
-    Column::new("kappa", "scaled stiffness"),
-    Column::new("psi", "reduced impact ratio"),
-    Column::new("damping", "scaled damping"),
-    Column::new("eps_t", "tangential restitution"),
-    Column::new("switch_count", "number of switches"),
-    Column::new("itinerary", "the phases, one character for each"),
-    Column::new("method", "Dormand–Prince pair at its usual tolerance"),
-    Column::new("eps_t_error", "error of the tangential restitution"),
-    Column::new("velocity_error", "error of the final reduced velocity w"),
-    Column::new(
+const COLLISIONS: [StudyColumn; 11] = [
+    StudyColumn::new("kappa", "scaled stiffness"),
+    StudyColumn::new("psi", "reduced impact ratio"),
+    StudyColumn::new("damping", "scaled damping"),
+    StudyColumn::new("eps_t", "tangential restitution"),
+    StudyColumn::new("switch_count", "number of switches"),
+    StudyColumn::new("itinerary", "the phases, one character for each"),
+    StudyColumn::new("method", "Dormand–Prince pair at its usual tolerance"),
+    StudyColumn::new("eps_t_error", "error of the tangential restitution"),
+    StudyColumn::new("velocity_error", "error of the final reduced velocity w"),
+    StudyColumn::new(
         "switch_time_error",
         "largest error of a switch time; empty if the switches are others",
     ),
-    Column::new("right_hand_sides", "evaluations of the right-hand side"),
+    StudyColumn::new("right_hand_sides", "evaluations of the right-hand side"),
 ];
 
-const MEASURED_TIME: [Column; 4] = [
-    Column::new("control", "what is made finer: the step, or the tolerance"),
-    Column::new("value", "the step or the tolerance"),
-    Column::new("velocity_error", "root mean square error of the final reduced velocity w"),
-    Column::new("microseconds", "measured time per collision in µs; not the same in another run"),
+const MEASURED_TIME: [StudyColumn; 4] = [
+    StudyColumn::new("control", "what is made finer: the step, or the tolerance"),
+    StudyColumn::new("value", "the step or the tolerance"),
+    StudyColumn::new("velocity_error", "root mean square error of the final reduced velocity w"),
+    StudyColumn::new(
+        "microseconds",
+        "measured time per collision in µs; not the same in another run",
+    ),
 ];

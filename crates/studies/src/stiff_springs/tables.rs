@@ -5,16 +5,16 @@ use super::limit::BOUND_FACTOR;
 use super::maxima::{LargestRestitution, LargestVelocity};
 use super::profile::{ComparedCollision, CurvePoint, OtherStart};
 use crate::study::Cell::Number;
-use crate::study::{Cell, Column, Table};
+use crate::study::{Cell, StudyColumn, StudyTable};
 
 impl StiffSprings {
-    pub(super) fn tables(&self) -> Vec<Table> {
+    pub(super) fn tables(&self) -> Vec<StudyTable> {
         let velocities = || self.velocities.iter().flatten();
         let peak = self.peak.velocity;
         let Self { profile, restitutions, .. } = self;
-        let table = |name, title: &str, columns: &[Column], rows| {
+        let table = |name, title: &str, columns: &[StudyColumn], rows| {
             let (title, columns) = (title.to_owned(), columns.to_vec());
-            Table { name, title, columns, rows }
+            StudyTable { name, title, columns, rows }
         };
         vec![
             table(
@@ -57,21 +57,21 @@ impl StiffSprings {
     }
 }
 
-const KAPPA: Column = Column::new("kappa", "scaled stiffness κ");
-const PSI: Column = Column::new("psi", "impact ratio ψ");
+const KAPPA: StudyColumn = StudyColumn::new("kappa", "scaled stiffness κ");
+const PSI: StudyColumn = StudyColumn::new("psi", "impact ratio ψ");
 
-const ENVELOPE: [Column; 11] = [
+const ENVELOPE: [StudyColumn; 11] = [
     KAPPA,
-    Column::new("psi", "impact ratio ψ that was asked for"),
-    Column::new("psi_largest", "ψ of the top of the oscillation around it"),
-    Column::new("w_final", "|w_final| at this top"),
-    Column::new("w_integrated", "the same by dop853"),
-    Column::new("w_scaled", "κ^{5/4} |w_final|"),
-    Column::new("w_theory", "F κ^{−5/4} with the largest F of the inner problem"),
-    Column::new("bound_printed", "1/√κ, the bound (27) as printed"),
-    Column::new("bound_corrected", "(5/4)^{3/5}/√κ"),
-    Column::new("last_onset", "√κ · (time left where the last stick phase starts)"),
-    Column::new("switch_count", "number of switches"),
+    StudyColumn::new("psi", "impact ratio ψ that was asked for"),
+    StudyColumn::new("psi_largest", "ψ of the top of the oscillation around it"),
+    StudyColumn::new("w_final", "|w_final| at this top"),
+    StudyColumn::new("w_integrated", "the same by dop853"),
+    StudyColumn::new("w_scaled", "κ^{5/4} |w_final|"),
+    StudyColumn::new("w_theory", "F κ^{−5/4} with the largest F of the inner problem"),
+    StudyColumn::new("bound_printed", "1/√κ, the bound (27) as printed"),
+    StudyColumn::new("bound_corrected", "(5/4)^{3/5}/√κ"),
+    StudyColumn::new("last_onset", "√κ · (time left where the last stick phase starts)"),
+    StudyColumn::new("switch_count", "number of switches"),
 ];
 
 fn envelope(largest: &LargestVelocity, peak: f64) -> Vec<Cell> {
@@ -92,13 +92,13 @@ fn envelope(largest: &LargestVelocity, peak: f64) -> Vec<Cell> {
     numbers.into_iter().map(Number).chain([crest.switch_count.into()]).collect()
 }
 
-const RESTITUTION: [Column; 6] = [
+const RESTITUTION: [StudyColumn; 6] = [
     KAPPA,
-    Column::new("range", "where the range of ψ starts, as a formula"),
-    Column::new("psi_lowest", "ψ at which the range starts"),
-    Column::new("psi_largest", "ψ of the largest |ε_t|"),
-    Column::new("eps_t", "the largest |ε_t|"),
-    Column::new("bound_printed", "1/(ψ√κ) where the range starts, the bound (27) as printed"),
+    StudyColumn::new("range", "where the range of ψ starts, as a formula"),
+    StudyColumn::new("psi_lowest", "ψ at which the range starts"),
+    StudyColumn::new("psi_largest", "ψ of the largest |ε_t|"),
+    StudyColumn::new("eps_t", "the largest |ε_t|"),
+    StudyColumn::new("bound_printed", "1/(ψ√κ) where the range starts, the bound (27) as printed"),
 ];
 
 fn restitution(found: &LargestRestitution) -> Vec<Cell> {
@@ -109,12 +109,12 @@ fn restitution(found: &LargestRestitution) -> Vec<Cell> {
     vec![Number(*kappa), start.name().into(), Number(*lowest), psi, eps_t, bound]
 }
 
-const COUNTS: [Column; 5] = [
+const COUNTS: [StudyColumn; 5] = [
     KAPPA,
     PSI,
-    Column::new("switch_count", "number of switches"),
-    Column::new("ratio", "this number over √κ t_c/π"),
-    Column::new(
+    StudyColumn::new("switch_count", "number of switches"),
+    StudyColumn::new("ratio", "this number over √κ t_c/π"),
+    StudyColumn::new(
         "ratio_expected",
         "2 min(t₁, t_c − t₁)/t_c, where t₁ is the time of the first switch",
     ),
@@ -125,23 +125,23 @@ fn counts(point: &LargestVelocity) -> Vec<Cell> {
     vec![kappa.into(), psi.into(), switch_count.into(), count_ratio.into(), count_expected.into()]
 }
 
-const PROFILE: [Column; 3] = [
-    Column::new("phase", "phase of the onsets, in half swings"),
-    Column::new("last_onset", "σ where the last stick phase starts"),
-    Column::new("f", "F, the final velocity"),
+const PROFILE: [StudyColumn; 3] = [
+    StudyColumn::new("phase", "phase of the onsets, in half swings"),
+    StudyColumn::new("last_onset", "σ where the last stick phase starts"),
+    StudyColumn::new("f", "F, the final velocity"),
 ];
 
 fn curve_point(point: &CurvePoint) -> Vec<Cell> {
     [point.phase, point.last_onset, point.velocity].map(Number).to_vec()
 }
 
-const COLLISIONS: [Column; 6] = [
+const COLLISIONS: [StudyColumn; 6] = [
     KAPPA,
     PSI,
-    Column::new("phase", "phase of the last onset"),
-    Column::new("w_scaled", "κ^{5/4} |w_final|"),
-    Column::new("f", "F of the inner problem at this phase"),
-    Column::new(
+    StudyColumn::new("phase", "phase of the last onset"),
+    StudyColumn::new("w_scaled", "κ^{5/4} |w_final|"),
+    StudyColumn::new("f", "F of the inner problem at this phase"),
+    StudyColumn::new(
         "phase_ahead",
         "phase minus √κ/π · (time left at the first switch), to the nearest whole number",
     ),
@@ -152,10 +152,10 @@ fn compared(compared: &ComparedCollision) -> Vec<Cell> {
     [kappa, psi, phase, velocity, inner, ahead].map(Number).to_vec()
 }
 
-const CONVERGENCE: [Column; 3] = [
-    Column::new("start", "σ at which orbits start"),
-    Column::new("coefficients", "coefficients of the series of the phase"),
-    Column::new(
+const CONVERGENCE: [StudyColumn; 3] = [
+    StudyColumn::new("start", "σ at which orbits start"),
+    StudyColumn::new("coefficients", "coefficients of the series of the phase"),
+    StudyColumn::new(
         "difference",
         "largest difference of F at 16 phases from F with start 100 and 15 coefficients",
     ),

@@ -9,7 +9,7 @@ use stickslip_plane::progress::SILENT;
 use stickslip_solver::method::{Order, fit_order};
 use stickslip_solver::{EmbeddedPair, Options, StepSize};
 use stickslip_studies::convergence::{
-    self, ConvergenceSettings, Coordinates, Switching, measure, reference,
+    self, ConvergenceSettings, Formulation, LocationSettings, measure, reference,
 };
 
 /// Collisions with two to eight switches, three to seven with damping.
@@ -20,13 +20,13 @@ fn references(damping: f64) -> Vec<Collision> {
     contacts.into_iter().flatten().map(|contact| reference(contact).expect("a reference")).collect()
 }
 
-fn located(h: f64) -> Switching {
+fn located(h: f64) -> LocationSettings {
     let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
-    Switching::Located { options }
+    LocationSettings::Located { options }
 }
 
-fn at_step_ends(step_size: f64) -> Switching {
-    Switching::AtStepEnds { step_size, max_steps: 1_000_000 }
+fn at_step_ends(step_size: f64) -> LocationSettings {
+    LocationSettings::AtStepEnds { step_size, max_steps: 1_000_000 }
 }
 
 /// The orders of the final velocity and of the switch times over steps from 1/4 down by `octaves`
@@ -34,8 +34,8 @@ fn at_step_ends(step_size: f64) -> Switching {
 fn orders(
     pair: EmbeddedPair,
     damping: f64,
-    coordinates: Coordinates,
-    (switching, octaves): (fn(f64) -> Switching, i32),
+    coordinates: Formulation,
+    (switching, octaves): (fn(f64) -> LocationSettings, i32),
 ) -> [Order; 2] {
     let references = references(damping);
     let steps = (0..=4 * octaves).map(|i| 0.25 * 0.5_f64.powf(f64::from(i) / 4.0));
@@ -62,7 +62,7 @@ fn assert_orders(found: [Order; 2], expected: [f64; 2], within: f64) {
 
 #[test]
 fn regularised_coordinates_keep_the_order() {
-    use Coordinates::Regularized;
+    use Formulation::Regularized;
     for damping in [0.0, 0.1] {
         // 5.033 ± 0.002, 5.016 ± 0.001; 5.039 ± 0.003, 5.031 ± 0.003
         assert_orders(
@@ -82,9 +82,9 @@ fn regularised_coordinates_keep_the_order() {
 #[test]
 fn plain_time_loses_it() {
     // 2.532 ± 0.018, 2.501 ± 0.000; 2.487 ± 0.007, 2.500 ± 0.000
-    let found = orders(EmbeddedPair::Dopri5, 0.0, Coordinates::PlainTime, (located, 10));
+    let found = orders(EmbeddedPair::Dopri5, 0.0, Formulation::PlainTime, (located, 10));
     assert_orders(found, [2.5; 2], 0.1);
-    let found = orders(EmbeddedPair::Dop853, 0.0, Coordinates::PlainTime, (located, 9));
+    let found = orders(EmbeddedPair::Dop853, 0.0, Formulation::PlainTime, (located, 9));
     assert_orders(found, [2.5; 2], 0.1);
 }
 
@@ -95,7 +95,7 @@ fn damping_in_plain_time_takes_away_another_order() {
     let reference = [reference(Contact::new(18.0, 0.1, 1.0).expect("valid")).expect("a reference")];
     let steps = (0..40).map(|i| 0.02 * 0.5_f64.powf(f64::from(i) / 4.0));
     let errors = steps.map(|h| {
-        let errors = measure(EmbeddedPair::Dop853, &reference, Coordinates::PlainTime, &located(h));
+        let errors = measure(EmbeddedPair::Dop853, &reference, Formulation::PlainTime, &located(h));
         assert!(errors.comparable(), "{h}");
         (h, errors.velocity.root_mean_square)
     });
@@ -106,7 +106,7 @@ fn damping_in_plain_time_takes_away_another_order() {
 
 #[test]
 fn steps_over_switches_leave_order_two_of_the_velocity_and_one_of_the_times() {
-    for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+    for coordinates in [Formulation::Regularized, Formulation::PlainTime] {
         // 1.99 ± 0.03, 1.00 ± 0.01; 2.09 ± 0.04, 1.02 ± 0.01
         let found = orders(EmbeddedPair::Dopri5, 0.0, coordinates, (at_step_ends, 10));
         assert_orders(found, [2.0, 1.0], 0.15);

@@ -4,7 +4,7 @@ use stickslip_model::{Collider, CollisionError, Contact, Damping, Law, Normal};
 use stickslip_solver::{Dopri5, EmbeddedPair, Options, StepSize};
 use stickslip_studies::StudyError;
 use stickslip_studies::convergence::{
-    ConvergenceSettings, Coordinates, Switching, integrate, measure, reference,
+    ConvergenceSettings, Formulation, LocationSettings, integrate, measure, reference,
 };
 
 const FIXED: Options = Options {
@@ -28,9 +28,9 @@ fn contacts() -> impl Iterator<Item = Contact> {
 #[test]
 fn regularised_and_located_is_what_the_collider_does() {
     for contact in contacts() {
-        let located = Switching::Located { options: FIXED };
+        let located = LocationSettings::Located { options: FIXED };
         let found =
-            integrate(EmbeddedPair::Dopri5, contact, Coordinates::Regularized, &located).unwrap();
+            integrate(EmbeddedPair::Dopri5, contact, Formulation::Regularized, &located).unwrap();
         let expected = Collider::unrefined(Dopri5, FIXED).collide(contact).unwrap();
         let error = found.deviation(&expected);
         assert_eq!((error.velocity, error.switch_times.unwrap().iter().sum()), (0.0, 0.0));
@@ -39,14 +39,14 @@ fn regularised_and_located_is_what_the_collider_does() {
 
 #[test]
 fn both_coordinates_and_both_ways_to_switch_tell_the_same_story() {
-    let located = Switching::Located { options: FIXED };
-    let coarse = Switching::AtStepEnds { step_size: 5e-4, max_steps: 100_000 };
+    let located = LocationSettings::Located { options: FIXED };
+    let coarse = LocationSettings::AtStepEnds { step_size: 5e-4, max_steps: 100_000 };
     for contact in contacts() {
         let truth = reference(contact).unwrap();
         for (coordinates, switching, velocity, time) in [
-            (Coordinates::PlainTime, &located, 1e-7, 1e-6),
-            (Coordinates::PlainTime, &coarse, 2e-6, 5e-4),
-            (Coordinates::Regularized, &coarse, 5e-6, 1.1e-3),
+            (Formulation::PlainTime, &located, 1e-7, 1e-6),
+            (Formulation::PlainTime, &coarse, 2e-6, 5e-4),
+            (Formulation::Regularized, &coarse, 5e-6, 1.1e-3),
         ] {
             let found = integrate(EmbeddedPair::Dop853, contact, coordinates, switching).unwrap();
             let error = found.deviation(&truth);
@@ -61,8 +61,8 @@ fn both_coordinates_and_both_ways_to_switch_tell_the_same_story() {
 fn other_laws_are_refused() {
     let law = Law { normal: Normal::Linear, damping: Damping::Linear, ..Law::PAPER };
     let contact = Contact::new(18.0, 0.4, 0.1).unwrap().with_law(law, 0.0).unwrap();
-    let located = Switching::Located { options: FIXED };
-    for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+    let located = LocationSettings::Located { options: FIXED };
+    for coordinates in [Formulation::Regularized, Formulation::PlainTime] {
         let found = integrate(EmbeddedPair::Dopri5, contact, coordinates, &located);
         assert!(matches!(found, Err(CollisionError::Law(_))));
     }
@@ -73,11 +73,11 @@ fn other_laws_are_refused() {
 #[test]
 fn other_switches_and_failures_are_counted() {
     let references: Vec<_> = contacts().map(|contact| reference(contact).unwrap()).collect();
-    let coarse = Switching::AtStepEnds { step_size: 0.2, max_steps: 100 };
-    let errors = measure(EmbeddedPair::Dopri5, &references, Coordinates::PlainTime, &coarse);
+    let coarse = LocationSettings::AtStepEnds { step_size: 0.2, max_steps: 100 };
+    let errors = measure(EmbeddedPair::Dopri5, &references, Formulation::PlainTime, &coarse);
     assert!(errors.failed == 0 && errors.other_switches > 0 && !errors.comparable());
     assert!(errors.velocity.largest >= errors.velocity.root_mean_square);
-    let short = Switching::AtStepEnds { step_size: 0.2, max_steps: 3 };
-    let errors = measure(EmbeddedPair::Dopri5, &references, Coordinates::PlainTime, &short);
+    let short = LocationSettings::AtStepEnds { step_size: 0.2, max_steps: 3 };
+    let errors = measure(EmbeddedPair::Dopri5, &references, Formulation::PlainTime, &short);
     assert!(errors.failed == 4 && errors.velocity.largest.is_nan() && !errors.comparable());
 }

@@ -1,7 +1,7 @@
 //! Searches with known answers, and their failures.
 
 use stickslip_studies::search::{
-    Method, SearchError, change, highest, maximum, maximum_near, root,
+    SearchError, SearchMethod, change, highest, maximum, maximum_near, root,
 };
 
 #[derive(Debug, PartialEq)]
@@ -51,7 +51,7 @@ fn maxima_and_zeros_by_brent_s_method() {
 fn a_zero_needs_values_of_two_signs() {
     let ends = [1.0, 3.0];
     let positive = |x: f64| Ok::<_, Failure>(x * x + 1.0);
-    let expected = SearchError::Solver { method: Method::BrentZero, ends };
+    let expected = SearchError::Solver { method: SearchMethod::BrentZero, ends };
     assert_eq!(root(ends.into(), positive), Err(Failure::Search(expected.clone())));
     let message = expected.to_string();
     assert!(message.starts_with("Brent's method for a zero failed from 1 to 3; expected"));

@@ -21,14 +21,14 @@ pub struct Region<Label> {
     /// The distance of `sample` from the region's boundary.
     pub clearance: f64,
     /// The indices of the curves that bound the region, with the side on which the region lies.
-    pub boundary: Vec<(usize, Side)>,
+    pub boundary: Vec<(usize, CurveSide)>,
 }
 
 /// A side of a curve, seen in the direction of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-pub enum Side {
+pub enum CurveSide {
     /// The left side.
     Left,
     /// The right side.
@@ -51,7 +51,7 @@ pub fn regions<Label: Clone + Ord, Margin>(
             .iter()
             .map(|piece| if piece.forward { 1.0 } else { -1.0 } * piece.cubic.area(origin))
             .sum();
-        let sides = [(Side::Left, area), (Side::Right, -area)];
+        let sides = [(CurveSide::Left, area), (CurveSide::Right, -area)];
         for (face, (side, area)) in faces.of_edges[index].into_iter().zip(sides) {
             let Some(face) = face else { continue };
             regions[face].area += area;
@@ -67,8 +67,11 @@ pub fn regions<Label: Clone + Ord, Margin>(
 }
 
 /// The label of a curve on one of its sides.
-fn label<Label, Margin>(curves: &[Curve<Label, Margin>], (curve, side): (usize, Side)) -> &Label {
-    &curves[curve].sides[usize::from(side == Side::Right)]
+fn label<Label, Margin>(
+    curves: &[Curve<Label, Margin>],
+    (curve, side): (usize, CurveSide),
+) -> &Label {
+    &curves[curve].sides[usize::from(side == CurveSide::Right)]
 }
 
 /// The most frequent label; the least one if there are several.

@@ -17,7 +17,8 @@ use crate::window::{Point, Window};
 /// A window of the plane, divided by curves into regions.
 ///
 /// ```
-/// use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex, VertexKind, Window};
+/// use stickslip_tracer::{Curve, Node, Point, Vertex, VertexKind, Window};
+/// use stickslip_tracer::regions::{Location, Subdivision};
 ///
 /// // A straight boundary from the lower side of the window to the upper side.
 /// let ends = [Point::new(0.5, 0.0), Point::new(0.5, 1.0)];
@@ -35,7 +36,7 @@ use crate::window::{Point, Window};
 /// let Location::Region(region) = plane.locate(&Point::new(0.2, 0.3)) else { panic!("inside") };
 /// assert_eq!(plane.regions()[region].label, Some("left"));
 /// assert_eq!(plane.regions()[region].area, 0.5);
-/// # Ok::<(), stickslip_tracer::SubdivisionError>(())
+/// # Ok::<(), stickslip_tracer::regions::SubdivisionError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Subdivision<Label, Margin> {

@@ -10,7 +10,7 @@ pub mod report;
 use crate::family::Family;
 use crate::regions::finding::SubdivisionError;
 use crate::regions::locate::Location;
-use crate::regions::region::Side;
+use crate::regions::region::CurveSide;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::judge::Judge;
 use crate::regions::verify::report::{Checkpoint, Origin, Reason, Unverified, Verification};
@@ -126,11 +126,11 @@ fn checkpoints<Label: Clone + Ord, Margin>(
     }
     let ratio = options.farthest / options.nearest;
     for curve in 0..plane.curves().len() {
-        for side in [Side::Left, Side::Right] {
+        for side in [CurveSide::Left, CurveSide::Right] {
             for _ in 0..options.near_points {
                 let (point, left) = plane.place_on(curve, random.f64());
                 let distance = options.nearest * ratio.powf(random.f64());
-                let away = if side == Side::Left { distance } else { -distance };
+                let away = if side == CurveSide::Left { distance } else { -distance };
                 let point = point + away * left;
                 checkpoints
                     .push(Checkpoint { point, origin: Origin::Near { curve, side, distance } });

@@ -2,7 +2,7 @@
 
 use crate::curve::Curve;
 use crate::family::Family;
-use crate::regions::outline::Stretch;
+use crate::regions::outline::OutlinePart;
 use crate::stack::conditions::{Condition, Conditions};
 use crate::stack::sample::Sample;
 use crate::stack::structure::side_of;
@@ -36,13 +36,13 @@ pub(super) fn candidates<F: Family>(
     let mut done = vec![false; plane.curves().len()];
     for stretch in regions.iter().flat_map(|&region| plane.outlines(region)).flatten() {
         match stretch {
-            Stretch::Curve(curve, _) => {
+            OutlinePart::Curve(curve, _) => {
                 if !std::mem::replace(&mut done[curve], true) {
                     of_curve(family, sample, curve, &mut found);
                 }
             }
-            Stretch::Window(ends) => {
-                let along = Condition::Side(side_of(plane.window(), ends));
+            OutlinePart::Window(ends) => {
+                let along = Condition::CurveSide(side_of(plane.window(), ends));
                 let at_ends = ends.map(|point| at_edge(sample, &point, &along));
                 push(&along, &at_ends, ends, &mut found);
             }
@@ -206,5 +206,5 @@ fn sides_at<F: Family>(
         window.high.y - point.y,
         point.x - window.low.x,
     ];
-    (0..4).filter(move |&side: &usize| distances[side].abs() <= near).map(Condition::Side)
+    (0..4).filter(move |&side: &usize| distances[side].abs() <= near).map(Condition::CurveSide)
 }

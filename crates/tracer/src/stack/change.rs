@@ -2,7 +2,7 @@
 
 use crate::family::Family;
 use crate::regions::locate::Location;
-use crate::stack::meeting::Meeting;
+use crate::stack::meeting::StackMeeting;
 use crate::stack::sample::Sample;
 
 /// A change of the structure of atlases with the third parameter.
@@ -13,7 +13,7 @@ pub struct Change<Label> {
     pub between: [f64; 2],
     /// The codimension-2 points that meet between these values; `None` if no conditions could be
     /// solved that explain the change.
-    pub meeting: Option<Meeting>,
+    pub meeting: Option<StackMeeting>,
     /// Whether there may be several changes: atlases between the two values are in doubt, or have
     /// other structures at values that are too close to each other.
     pub doubtful: bool,
@@ -102,7 +102,7 @@ impl<Label> Change<Label> {
 impl<Label: Clone + Ord> Change<Label> {
     pub(super) fn new<F: Family<Label = Label>>(
         samples: [&Sample<F>; 2],
-        meeting: Option<Meeting>,
+        meeting: Option<StackMeeting>,
         doubtful: bool,
     ) -> Self {
         let between = samples.map(|sample| sample.value);

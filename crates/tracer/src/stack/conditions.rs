@@ -9,7 +9,7 @@ pub(super) enum Condition<Margin> {
     /// A margin.
     Margin(Margin),
     /// The distance from a side of the window, counterclockwise from the lower one.
-    Side(usize),
+    CurveSide(usize),
     /// The angle between the boundaries of two conditions in the plane.
     Angle(Box<[Condition<Margin>; 2]>),
     /// The slope of a margin along an axis of the plane.
@@ -101,7 +101,7 @@ impl<Margin: Clone + PartialEq> Conditions<Margin> {
 
     /// Whether values of margins and distances vanish, and nothing else.
     pub fn are_values(&self) -> bool {
-        let is_value = |one: &_| matches!(one, Condition::Margin(_) | Condition::Side(_));
+        let is_value = |one: &_| matches!(one, Condition::Margin(_) | Condition::CurveSide(_));
         self.three.iter().all(is_value)
     }
 
@@ -118,7 +118,7 @@ impl<Margin: Clone + PartialEq> Conditions<Margin> {
 
 impl<Margin> Condition<Margin> {
     pub const fn is_side(&self) -> bool {
-        matches!(self, Self::Side(_))
+        matches!(self, Self::CurveSide(_))
     }
 
     fn move_to<F: Family<Margin = Margin>>(&mut self, family: &F, point: &Point) {
@@ -128,7 +128,7 @@ impl<Margin> Condition<Margin> {
                     *margin = moved;
                 }
             }
-            Self::Side(_) => {}
+            Self::CurveSide(_) => {}
             Self::Angle(two) => two.iter_mut().for_each(|one| one.move_to(family, point)),
         }
     }

@@ -15,7 +15,7 @@ use crate::window::{Point, Window};
 /// A place in the plane and a value of the third parameter at which codimension-2 points meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Meeting {
+pub struct StackMeeting {
     /// What happens.
     pub kind: MeetingKind,
     /// The value of the third parameter.
@@ -69,7 +69,7 @@ pub(super) fn solve<F: Family>(
 /// What a search for a meeting finds.
 pub(super) enum Solved<Margin> {
     /// A meeting.
-    Sure(Meeting),
+    Sure(StackMeeting),
     /// A place at which a meeting may be.
     Vague(Vague<Margin>),
 }
@@ -89,7 +89,7 @@ pub(super) fn touching<F: Family>(
     family: &impl Fn(f64) -> F,
     vague: &Vague<F::Margin>,
     within: &Box3,
-) -> Option<Meeting> {
+) -> Option<StackMeeting> {
     let conditions = tangent(family, &vague.conditions, &vague.at, within)?;
     match newton(family, conditions, vague.at, within)? {
         Solved::Sure(meeting) => Some(meeting),
@@ -98,14 +98,14 @@ pub(super) fn touching<F: Family>(
 }
 
 /// The meeting at a place, if that is in the box.
-fn meeting(kind: MeetingKind, at: &Vector3<f64>, within: &Box3) -> Option<Meeting> {
+fn meeting(kind: MeetingKind, at: &Vector3<f64>, within: &Box3) -> Option<StackMeeting> {
     let slack = Lengths::PARTS.piece;
     let inside = at.xy().iter().all(|part| (-slack..=1.0 + slack).contains(part))
         && at.z > 0.0
         && at.z < 1.0;
     // On the edge of the window, the place is beside it by rounding.
     let at = at.map(|part| part.clamp(0.0, 1.0));
-    inside.then(|| Meeting { kind, value: within.value(&at), point: within.point(&at) })
+    inside.then(|| StackMeeting { kind, value: within.value(&at), point: within.point(&at) })
 }
 
 fn newton<F: Family>(
@@ -276,10 +276,10 @@ impl<F: Family> Here<'_, F> {
                 let value = self.family.margin(&self.within.point(at), margin).ok().flatten();
                 value.filter(|value| value.is_finite())
             }
-            Condition::Side(0) => Some(at.y),
-            Condition::Side(1) => Some(1.0 - at.x),
-            Condition::Side(2) => Some(1.0 - at.y),
-            Condition::Side(_) => Some(at.x),
+            Condition::CurveSide(0) => Some(at.y),
+            Condition::CurveSide(1) => Some(1.0 - at.x),
+            Condition::CurveSide(2) => Some(1.0 - at.y),
+            Condition::CurveSide(_) => Some(at.x),
             Condition::Angle(two) => {
                 let [one, other] = two.each_ref().map(|condition| self.gradient(condition, at));
                 Some(one?.normalize().perp(&other?.normalize()))

@@ -21,7 +21,7 @@ use crate::regions::region::Region;
 use crate::stack::StackOptions;
 use crate::stack::candidates::candidates;
 use crate::stack::change::{Change, Effect};
-use crate::stack::meeting::{Box3, Meeting, Solved, solve, touching};
+use crate::stack::meeting::{Box3, Solved, StackMeeting, solve, touching};
 use crate::stack::sample::Sample;
 use crate::stack::structure::Structure;
 use crate::survey::Surveyor;
@@ -74,7 +74,7 @@ pub(super) struct Search<'a, F: Family, At, E> {
 
 /// A meeting at which the structure does not change, according to the atlases within reach.
 struct Tried<Label> {
-    meeting: Meeting,
+    meeting: StackMeeting,
     reach: Reach,
     /// The values of atlases on both sides that are not in doubt, and their structure.
     around: Option<([f64; 2], Structure<Label>)>,
@@ -217,16 +217,16 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         differing: &[Vec<usize>; 2],
         values: [f64; 2],
         reach: Reach,
-    ) -> Vec<Meeting> {
+    ) -> Vec<StackMeeting> {
         /// The number of candidates of each atlas that are tried, and of solutions.
         const TRIED: usize = 60;
         const SOLVED: usize = 4;
         let within = Box3 { window: self.window, values };
         let near = self.width(values[0], values[1]);
         let (mut tried, mut vague) = (Vec::new(), Vec::new());
-        let mut meetings: Vec<Meeting> = Vec::new();
+        let mut meetings: Vec<StackMeeting> = Vec::new();
         let tried_before = |tried: &&Tried<_>| reach == Reach::Close || tried.reach == Reach::Far;
-        let mut add = |found: Meeting| {
+        let mut add = |found: StackMeeting| {
             let is_near = |other: f64| (other - found.value).abs() < near;
             let mut before = self.tried.iter().filter(tried_before);
             let known = before.any(|tried| is_near(tried.meeting.value))
@@ -278,7 +278,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         &mut self,
         low: &Sample<F>,
         high: &Sample<F>,
-        meeting: &Meeting,
+        meeting: &StackMeeting,
         reach: Reach,
     ) -> Searched<bool, F> {
         let widths: &[f64] = match reach {
@@ -364,12 +364,12 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
 
     /// The meeting between two atlases that differ and are as close to each other as those beside a
     /// meeting are. It may be one beside which atlases were in doubt before.
-    fn enclosed(&self, ends: [&Sample<F>; 2], differing: &[Vec<usize>; 2]) -> Option<Meeting> {
+    fn enclosed(&self, ends: [&Sample<F>; 2], differing: &[Vec<usize>; 2]) -> Option<StackMeeting> {
         /// How much farther it is looked for, in widths: differences of values close to each other
         /// are too inaccurate.
         const AROUND: f64 = 1000.0;
         let [low, high] = ends.map(|sample| sample.value);
-        let is_between = |meeting: &Meeting| low < meeting.value && meeting.value < high;
+        let is_between = |meeting: &StackMeeting| low < meeting.value && meeting.value < high;
         let in_doubt = self.tried.iter().filter(|tried| tried.around.is_none());
         let before = in_doubt.map(|tried| tried.meeting).find(is_between);
         let around = AROUND * self.width(low, high);
@@ -387,7 +387,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         high: &Sample<F>,
         effects: &[Effect<F::Label>],
         differing: &[Vec<usize>; 2],
-    ) -> Option<(Meeting, [f64; 2])> {
+    ) -> Option<(StackMeeting, [f64; 2])> {
         let greatest = low.value.abs().max(high.value.abs());
         let near = (NARROW * self.width(low.value, high.value)).min(UNSEEN * greatest);
         let Lengths { around: beside, close, .. } = Lengths::of(self.window.extent().min());
@@ -415,7 +415,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         nearest.map(|(meeting, ends, _)| (meeting, ends))
     }
 
-    fn push(&mut self, ends: [&Sample<F>; 2], meeting: Option<Meeting>, doubtful: bool) {
+    fn push(&mut self, ends: [&Sample<F>; 2], meeting: Option<StackMeeting>, doubtful: bool) {
         let change = Change::new(ends, meeting, doubtful);
         self.found.push((change, ends[1].structure.clone()));
     }

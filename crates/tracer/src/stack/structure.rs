@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use crate::family::Family;
-use crate::regions::outline::Stretch;
-use crate::regions::region::Side;
+use crate::regions::outline::OutlinePart;
+use crate::regions::region::CurveSide;
 use crate::regions::subdivision::Subdivision;
 use crate::window::{Point, Window};
 
@@ -157,24 +157,26 @@ fn coloured(rings: &[Vec<Beside>], colours: &[usize]) -> Vec<Vec<usize>> {
 fn ring<Label: Clone + Ord, Margin>(
     plane: &Subdivision<Label, Margin>,
     degrees: &[usize],
-    outline: &[Stretch],
+    outline: &[OutlinePart],
 ) -> Vec<Beside> {
     // What lies beside each stretch, and whether the stretch continues the one before it if both
     // are beside the same.
     let stretches: Vec<(Beside, bool)> = outline
         .iter()
         .filter_map(|stretch| match *stretch {
-            Stretch::Curve(curve, side) => {
+            OutlinePart::Curve(curve, side) => {
                 let (far, start) = match side {
-                    Side::Left => (1, 0),
-                    Side::Right => (0, 1),
+                    CurveSide::Left => (1, 0),
+                    CurveSide::Right => (0, 1),
                 };
                 // Only a plane with findings has a curve without a region beside it.
                 let beside = Beside::Region(plane.regions_beside(curve)[far]?);
                 let ends = plane.curves()[curve].ends;
                 Some((beside, ends.is_some_and(|ends| degrees[ends[start]] == 2)))
             }
-            Stretch::Window(ends) => Some((Beside::Window(side_of(plane.window(), ends)), true)),
+            OutlinePart::Window(ends) => {
+                Some((Beside::Window(side_of(plane.window(), ends)), true))
+            }
         })
         .collect();
     let mut ring: Vec<Beside> = Vec::with_capacity(stretches.len());

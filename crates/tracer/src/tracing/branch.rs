@@ -37,7 +37,8 @@ use crate::window::Point;
 /// lie behind the vertex of [`Branch::end`].
 ///
 /// ```
-/// use stickslip_tracer::{Branch, End, Family, FreeRun, Point, Runs, Seed, TraceOptions, Window};
+/// use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, Window};
+/// use stickslip_tracer::tracing::{Branch, End, Runs, Seed};
 ///
 /// /// A guard fires inside the unit circle.
 /// struct Disc;

@@ -60,7 +60,7 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 ///
 /// ```
 /// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
-/// use stickslip_tracer::{HybridFamily, Point, TraceOptions, Window, follow};
+/// use stickslip_tracer::{Point, TraceOptions, Window, hybrid::HybridFamily, tracing::follow};
 ///
 /// /// A ball that keeps a fraction of its velocity at each bounce.
 /// struct Ball(f64);

@@ -3,7 +3,9 @@
 use std::convert::Infallible;
 
 use stickslip_tracer::{
-    Family, FreeRun, Network, Point, Subdivision, TraceOptions, Window, trace_by_margins,
+    Family, FreeRun, Point, TraceOptions, Window,
+    regions::Subdivision,
+    tracing::{Network, trace_by_margins},
 };
 
 /// Margins with names, each with the function of the plane that it is where it exists.

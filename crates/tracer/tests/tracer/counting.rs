@@ -4,8 +4,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_solver::margin::Margin;
 use stickslip_tracer::{
-    AtlasOptions, Count, Family, FamilyError, FreeRun, Itinerary, Point, Serial, Surveyor,
-    TraceError, TraceOptions, Tracer, Watch, Window,
+    AtlasOptions, Family, FreeRun, Point, Serial, Surveyor, TraceError, TraceOptions, Watch,
+    Window,
+    hybrid::{FamilyError, Itinerary},
+    tracing::{Count, Tracer},
 };
 
 use crate::any::any;

@@ -3,7 +3,11 @@
 
 use stickslip_solver::margin::Place;
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
-use stickslip_tracer::{HybridFamily, Itinerary, Point, Problem, TraceOptions, Window, trace};
+use stickslip_tracer::{
+    Point, TraceOptions, Window,
+    hybrid::{HybridFamily, Itinerary, Problem},
+    trace,
+};
 
 use crate::any::{any, any_system};
 

@@ -1,6 +1,6 @@
 //! The places where curves are extremal in a coordinate.
 
-use stickslip_tracer::{Point, Tracer};
+use stickslip_tracer::{Point, tracing::Tracer};
 
 use crate::any::any;
 use crate::guards::{Guards, SQUARE, exact};

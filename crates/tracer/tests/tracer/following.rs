@@ -2,7 +2,10 @@
 
 use std::f64::consts::PI;
 
-use stickslip_tracer::{End, Family, FreeRun, Point, TraceOptions, VertexKind, Window, follow};
+use stickslip_tracer::{
+    Family, FreeRun, Point, TraceOptions, VertexKind, Window,
+    tracing::{End, follow},
+};
 
 use crate::any::any;
 use crate::guards::{Failed, Label, Margin};

@@ -3,8 +3,9 @@
 use stickslip_solver::dynamic::DynamicSystem;
 use stickslip_solver::{Direction, Dop853, Guard, Options};
 use stickslip_tracer::{
-    Atlas, AtlasOptions, DynamicFamily, DynamicProblem, DynamicSetting, Itinerary, Point,
-    TraceOptions, VerifyOptions, Window,
+    Atlas, AtlasOptions, Point, TraceOptions, Window,
+    hybrid::{DynamicFamily, DynamicProblem, DynamicSetting, Itinerary},
+    regions::VerifyOptions,
 };
 
 use crate::any::any;

@@ -1,7 +1,7 @@
 //! Families whose guards are functions of the parameters, with assertions about their networks.
 
 use stickslip_tracer::{
-    Curve, Family, FreeRun, Network, Point, TraceOptions, VertexKind, Window, trace,
+    Curve, Family, FreeRun, Point, TraceOptions, VertexKind, Window, trace, tracing::Network,
 };
 
 use crate::any::any;

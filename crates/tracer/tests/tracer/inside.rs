@@ -31,6 +31,6 @@ pub mod tracing {
     mod builder;
     pub mod end;
     pub mod network {
-        pub use stickslip_tracer::{Network, TraceStatistics, Unresolved};
+        pub use stickslip_tracer::tracing::{Network, TraceStatistics, Unresolved};
     }
 }

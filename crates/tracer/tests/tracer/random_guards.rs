@@ -4,7 +4,8 @@ use std::env;
 
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
-    Atlas, AtlasOptions, Family, HybridFamily, Point, TraceOptions, VerifyOptions, Window,
+    Atlas, AtlasOptions, Family, Point, TraceOptions, Window, hybrid::HybridFamily,
+    regions::VerifyOptions,
 };
 
 use crate::any::any;

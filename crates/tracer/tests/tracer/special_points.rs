@@ -6,8 +6,10 @@ use std::fmt::Debug;
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
-    Family, HybridFamily, Itinerary, Point, SpecialPoint, Surveyor, TraceOptions, VertexKind,
-    Window, trace,
+    Family, Point, Surveyor, TraceOptions, VertexKind, Window,
+    hybrid::{HybridFamily, Itinerary},
+    trace,
+    tracing::SpecialPoint,
 };
 
 use crate::any::{any, any_system};

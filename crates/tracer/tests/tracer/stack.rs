@@ -3,8 +3,9 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_tracer::{
-    AtlasOptions, Change, Effect, Family, FreeRun, MeetingKind, Point, Progress, Serial, Stack,
-    StackOf, StackOptions, TraceOptions, VerifyOptions, Watch, Window,
+    AtlasOptions, Family, FreeRun, Point, Progress, Serial, TraceOptions, Watch, Window,
+    regions::VerifyOptions,
+    stack::{Change, Effect, MeetingKind, Stack, StackOf, StackOptions},
 };
 
 use crate::any::any;

@@ -11,7 +11,10 @@ use self::planes::{
     KnownPlane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
     grid, islands, short_frame_parts, touching_circles, upright_cusp, vertex_beside_the_frame,
 };
-use stickslip_tracer::{Location, Point, Subdivision, VerifyOptions, verify};
+use stickslip_tracer::{
+    Point,
+    regions::{Location, Subdivision, VerifyOptions, verify},
+};
 
 /// Asserts that the regions have these labels and areas, to 1e-9, and that labels are right at 1e5
 /// random points and beside every curve, down to twice the tolerance.

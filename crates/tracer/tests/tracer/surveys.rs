@@ -7,7 +7,7 @@ use std::thread;
 
 use stickslip_tracer::{
     AtlasOf, AtlasOptions, Effort, Executor, Family, FreeRun, FreeRunOf, LabelOf, Point, Progress,
-    Surveyor, TraceOptions, VerifyOptions, Watch, Window,
+    Surveyor, TraceOptions, Watch, Window, regions::VerifyOptions,
 };
 
 use crate::any::any;

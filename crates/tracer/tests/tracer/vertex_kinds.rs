@@ -4,8 +4,10 @@
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
-    HybridFamily, Itinerary, Network, Point, Problem, SpecialPoint, TraceOptions, VertexKind,
-    Window, trace,
+    Point, TraceOptions, VertexKind, Window,
+    hybrid::{HybridFamily, Itinerary, Problem},
+    trace,
+    tracing::{Network, SpecialPoint},
 };
 
 use crate::any::{AnySystem, any, any_system};

@@ -2,8 +2,8 @@
 //! hair inside, and in corners.
 
 use stickslip_tracer::{
-    Atlas, AtlasOf, AtlasOptions, Family, FreeRun, Point, TraceOptions, VerifyOptions, VertexKind,
-    Window,
+    Atlas, AtlasOf, AtlasOptions, Family, FreeRun, Point, TraceOptions, VertexKind, Window,
+    regions::VerifyOptions,
 };
 
 use crate::any::any;

@@ -14,7 +14,7 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use stickslip::model::{
-    self, Contact, CoulombTest, Damping, End, Engine, HistoryOf, Law, Normal, Tangential,
+    self, Contact, ContactEnd, CoulombTest, Damping, Engine, HistoryOf, Law, Normal, Tangential,
     Tolerances,
 };
 
@@ -50,16 +50,16 @@ fn laws() -> Vec<Law> {
     let mut laws = Vec::new();
     for normal in [Normal::Linear, Normal::Hertz] {
         for (damping, limit_damping, end) in [
-            (Damping::None, false, End::Force),
-            (Damping::Linear, false, End::Force),
-            (Damping::Linear, true, End::Overlap),
-            (Damping::Linear, false, End::Overlap),
-            (Damping::Viscoelastic, false, End::Force),
-            (Damping::Viscoelastic, true, End::Overlap),
-            (Damping::Viscoelastic, false, End::Overlap),
-            (Damping::Tsuji, false, End::Force),
-            (Damping::Tsuji, true, End::Overlap),
-            (Damping::Tsuji, false, End::Overlap),
+            (Damping::None, false, ContactEnd::Force),
+            (Damping::Linear, false, ContactEnd::Force),
+            (Damping::Linear, true, ContactEnd::Overlap),
+            (Damping::Linear, false, ContactEnd::Overlap),
+            (Damping::Viscoelastic, false, ContactEnd::Force),
+            (Damping::Viscoelastic, true, ContactEnd::Overlap),
+            (Damping::Viscoelastic, false, ContactEnd::Overlap),
+            (Damping::Tsuji, false, ContactEnd::Force),
+            (Damping::Tsuji, true, ContactEnd::Overlap),
+            (Damping::Tsuji, false, ContactEnd::Overlap),
         ] {
             for (tangential, history) in [
                 (Tangential::Constant, HistoryOf::Displacement),

@@ -9,7 +9,7 @@ use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use stickslip::tracer::{
-    Atlas, AtlasOptions, Family, FreeRun, Location, Point, TraceOptions, Window,
+    Atlas, AtlasOptions, Family, FreeRun, Point, TraceOptions, Window, regions::Location,
 };
 
 use crate::{Row, timed};

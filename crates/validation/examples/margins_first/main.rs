@@ -40,8 +40,10 @@ use std::time::Instant;
 
 use stickslip::solver::{Dop853, Options};
 use stickslip::tracer::{
-    AtlasOptions, Family, HybridFamily, Location, Network, Point, Problem, RunNames, Subdivision,
-    Surveyor, TraceOptions, Watch, Window, trace_by_margins,
+    AtlasOptions, Family, Point, RunNames, Surveyor, TraceOptions, Watch, Window,
+    hybrid::{HybridFamily, Problem},
+    regions::{Location, Subdivision},
+    tracing::{Network, trace_by_margins},
 };
 
 use any::Any;

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use stickslip::model::{Collision, Contact, Engine};
 use stickslip::plane::atlas::{CollisionAtlas, Frame, trace};
 use stickslip::plane::progress::SILENT;
-use stickslip_practice::tables::{self, Table, TableSettings};
+use stickslip_practice::tables::{self, RestitutionTable, TableSettings};
 
 mod bilinear;
 
@@ -124,7 +124,7 @@ type Errors = (f64, [f64; 2], f64, usize);
 
 fn errors(
     points: usize,
-    table: &Table,
+    table: &RestitutionTable,
     bilinear: &Bilinear,
     place: impl Fn(&mut Rng) -> [f64; 2] + Sync,
 ) -> Result<Errors, Box<dyn Error>> {
@@ -175,7 +175,7 @@ fn best(places: &[[f64; 2]], value: impl Fn([f64; 2]) -> f64) -> f64 {
 }
 
 /// The header, compiled and run at the same points.
-fn in_c(table: &Table, places: &[[f64; 2]]) -> Result<(), Box<dyn Error>> {
+fn in_c(table: &RestitutionTable, places: &[[f64; 2]]) -> Result<(), Box<dyn Error>> {
     let directory = env::temp_dir().join(format!("stickslip_tables_{}", std::process::id()));
     fs::create_dir_all(&directory)?;
     let header = table.c_header("stickslip")?;

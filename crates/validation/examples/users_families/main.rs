@@ -30,8 +30,9 @@ use std::time::Instant;
 use stickslip::plane::progress::InParallel;
 use stickslip::solver::{Dop853, Options, Start, State};
 use stickslip::tracer::{
-    AtlasOptions, Family, HybridFamily, Point, Problem, Surveyor, TraceOptions, VerifyOptions,
-    Watch, Window,
+    AtlasOptions, Family, Point, Surveyor, TraceOptions, Watch, Window,
+    hybrid::{HybridFamily, Problem},
+    regions::VerifyOptions,
 };
 
 use impact_oscillator::Oscillator;

@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use rayon::prelude::*;
-use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
+use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, MapValues};
 use stickslip_files::output::csv::CsvFile;
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::npz::{Archive, array, number, plain, text, texts};
 use stickslip_files::output::picture::PictureFile;
-use stickslip_tracer::{DynamicFired, Point};
+use stickslip_tracer::{Point, hybrid::DynamicFired};
 
 use super::{MapArguments, MapFormat};
 use crate::commands::run::outcome;
@@ -215,12 +215,12 @@ impl Map<'_> {
             lines: Vec::new(),
             points: Vec::new(),
         };
-        let mut panels = vec![panel("number of events", Values::Switches(&counts))];
+        let mut panels = vec![panel("number of events", MapValues::Switches(&counts))];
         for (heading, values) in &values {
             // Where all runs end at one time, that is known.
             let first = values[0];
             if values.iter().any(|&value| value != first) {
-                panels.push(panel(heading, Values::Restitution(values)));
+                panels.push(panel(heading, MapValues::Restitution(values)));
             }
         }
         let size = format!("{} × {} runs", self.x.len(), self.y.len());

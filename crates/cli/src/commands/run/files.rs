@@ -4,7 +4,7 @@ use std::path::Path;
 
 use stickslip_expression::{Recording, System};
 use stickslip_figure::Svg;
-use stickslip_figure::pictures::{self, run::Run};
+use stickslip_figure::pictures::{self, run::RunPicture};
 use stickslip_files::output::csv::CsvFile;
 use stickslip_files::output::file::StoredFile;
 
@@ -91,7 +91,7 @@ pub fn draw(run: &SystemRun, found: &Recording) -> Svg {
     let values: Vec<String> = values.take(6).collect();
     let title = format!("{name}:  {}", values.join(", "));
     let title = title.strip_suffix(":  ").unwrap_or(&title);
-    pictures::run::draw(&Run {
+    pictures::run::draw(&RunPicture {
         title,
         time: "time t",
         names: shown.iter().map(|&component| &*system.components[component].name).collect(),

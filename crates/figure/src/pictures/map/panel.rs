@@ -24,7 +24,7 @@ pub struct MapPanel<'a> {
     /// Number of rows.
     pub rows: usize,
     /// The quantity in each cell, row by row, the first row at the lower end of the axis.
-    pub values: Values<'a>,
+    pub values: MapValues<'a>,
     /// Lines over the colours.
     pub lines: Vec<(Stroke, Vec<(f64, f64)>)>,
     /// Points over the colours with their names, in ascending order on a vertical line. The names
@@ -34,7 +34,7 @@ pub struct MapPanel<'a> {
 
 /// Values that are shown in colours.
 #[derive(Clone, Copy, Debug)]
-pub enum Values<'a> {
+pub enum MapValues<'a> {
     /// Tangential restitution; NaN in cells without a collision.
     Restitution(&'a [f64]),
     /// Number of switches, which also labels each region with room for a label; negative in cells
@@ -72,8 +72,8 @@ impl MapPanel<'_> {
         }
         let Self { columns, rows, .. } = *self;
         let values = match self.values {
-            Values::Restitution(values) => values.len(),
-            Values::Switches(values) => values.len(),
+            MapValues::Restitution(values) => values.len(),
+            MapValues::Switches(values) => values.len(),
         };
         if values > 0 && columns.checked_mul(rows) == Some(values) {
             return Ok(());

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use colorous::Color;
 
-use super::panel::{MapPanel, Values};
+use super::panel::{MapPanel, MapValues};
 use crate::canvas::panel::{LINEAR, Panel};
 use crate::canvas::shape::Rectangle;
 use crate::canvas::style::{self, SMALL};
@@ -18,8 +18,8 @@ const MOST_NUMBERS: usize = 16;
 /// All numbers of switches that occur in `maps`, so that each number has one colour in all panels.
 pub fn counts(maps: &[MapPanel<'_>]) -> Vec<i32> {
     let values = maps.iter().flat_map(|map| match map.values {
-        Values::Switches(values) => values,
-        Values::Restitution(_) => &[],
+        MapValues::Switches(values) => values,
+        MapValues::Restitution(_) => &[],
     });
     let counts: BTreeSet<i32> = values.copied().filter(|&count| count >= 0).collect();
     counts.into_iter().collect()

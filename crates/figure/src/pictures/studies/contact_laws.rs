@@ -8,7 +8,7 @@ use super::Picture;
 use crate::canvas::svg::Svg;
 use crate::error::FigureError;
 use crate::pictures::collision;
-use crate::pictures::map::{self, MapAxis, MapPanel, Values};
+use crate::pictures::map::{self, MapAxis, MapPanel, MapValues};
 
 /// Draws the pictures of a study: for each law maps and the forces of the standard impact.
 ///
@@ -56,9 +56,9 @@ fn maps(study: &ContactLaws, law: &LawOnPlane) -> Result<Svg, FigureError> {
     map::draw(
         &format!("`{}`", law.named.names[0]),
         &[
-            panel("tangential restitution ε_t", Values::Restitution(&law.eps_t)),
-            panel("number of switches", Values::Switches(&law.switches)),
-            panel("ε_t less that of the paper's law", Values::Restitution(&law.difference)),
+            panel("tangential restitution ε_t", MapValues::Restitution(&law.eps_t)),
+            panel("number of switches", MapValues::Switches(&law.switches)),
+            panel("ε_t less that of the paper's law", MapValues::Restitution(&law.difference)),
         ],
     )
 }

@@ -3,7 +3,7 @@
 use stickslip_solver::EmbeddedPair;
 use stickslip_solver::method::Order;
 use stickslip_studies::convergence::{
-    Control, Convergence, Coordinates, ErrorRow, ErrorSeries, Errors, Scheme, Spread,
+    Control, Convergence, ErrorRow, ErrorSeries, Errors, Formulation, SeriesScheme, Spread,
     SwitchHandling, fitted,
 };
 
@@ -11,7 +11,7 @@ use super::Picture;
 use crate::canvas::shape::Stroke;
 use crate::canvas::style::METHODS;
 use crate::canvas::svg::Svg;
-use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
+use crate::pictures::chart::{self, ChartAxis, LineChart, Mark, Shape};
 
 /// An error that is drawn.
 struct DrawnError {
@@ -106,10 +106,10 @@ fn errors(
 }
 
 fn work(study: &Convergence) -> Svg {
-    let shown = |scheme: &Scheme| {
+    let shown = |scheme: &SeriesScheme| {
         scheme.control == Control::Tolerance
             || (scheme.switches, scheme.coordinates)
-                == (SwitchHandling::AtStepEnds, Coordinates::PlainTime)
+                == (SwitchHandling::AtStepEnds, Formulation::PlainTime)
     };
     let lines = study.series.iter().filter(|series| shown(&series.scheme)).map(|series| {
         let points = points(series, |row| study.work(&row.errors), &VELOCITY);
@@ -136,13 +136,13 @@ fn points(
 }
 
 /// A line with marks, and its name in the legend.
-fn marked_line(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
+fn marked_line(scheme: SeriesScheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
     let stroke = stroke(scheme);
     let shape = match (scheme.switches, scheme.coordinates) {
-        (SwitchHandling::Located, Coordinates::Regularized) => Shape::Disc,
-        (SwitchHandling::Located, Coordinates::PlainTime) => Shape::Ring,
-        (SwitchHandling::AtStepEnds, Coordinates::Regularized) => Shape::Square,
-        (SwitchHandling::AtStepEnds, Coordinates::PlainTime) => Shape::Cross,
+        (SwitchHandling::Located, Formulation::Regularized) => Shape::Disc,
+        (SwitchHandling::Located, Formulation::PlainTime) => Shape::Ring,
+        (SwitchHandling::AtStepEnds, Formulation::Regularized) => Shape::Square,
+        (SwitchHandling::AtStepEnds, Formulation::PlainTime) => Shape::Cross,
     };
     let [pair, variables, switches] = scheme.names();
     let name = format!("{pair}, {variables}, {switches}: {remark}");
@@ -151,7 +151,7 @@ fn marked_line(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::
 }
 
 /// The stroke of a pair.
-fn stroke(scheme: Scheme) -> Stroke {
+fn stroke(scheme: SeriesScheme) -> Stroke {
     match scheme.pair {
         EmbeddedPair::Dopri5 => METHODS[0],
         EmbeddedPair::Dop853 => METHODS[1],
@@ -168,5 +168,5 @@ fn chart(title: &str, axis: &str, drawn: &DrawnError, series: Vec<chart::Series>
     };
     let (x, y) = (range(|point| point.0), range(|point| point.1));
     let (x, y) = (ChartAxis::around(axis, x), ChartAxis::around(drawn.name, y));
-    chart::draw(&Chart { title, x, y, series })
+    chart::draw(&LineChart { title, x, y, series })
 }

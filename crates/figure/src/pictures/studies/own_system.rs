@@ -6,7 +6,7 @@ use stickslip_studies::own_system::{ComparedRun, SystemConvergence};
 use super::Picture;
 use crate::canvas::style::METHODS;
 use crate::canvas::svg::Svg;
-use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
+use crate::pictures::chart::{self, ChartAxis, LineChart, Mark, Series, Shape};
 
 /// Draws the pictures of a study: errors against work, and against tolerances.
 pub fn draw(study: &SystemConvergence) -> Vec<Picture> {
@@ -56,5 +56,5 @@ fn chart(
     };
     let (x, y) = (axis_of(axis, |it| it.0), axis_of("error", |it| it.1));
     let title = format!("{}: {title}", study.settings.name);
-    chart::draw(&Chart { title: &title, x, y, series })
+    chart::draw(&LineChart { title: &title, x, y, series })
 }

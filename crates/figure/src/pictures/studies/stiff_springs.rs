@@ -9,7 +9,7 @@ use crate::canvas::panel::Scale;
 use crate::canvas::shape::Stroke;
 use crate::canvas::style::{BLUE, GREEN, INK, PURPLE, SKY, VERMILION};
 use crate::canvas::svg::Svg;
-use crate::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
+use crate::pictures::chart::{self, ChartAxis, LineChart, Mark, Series, Shape};
 
 /// Colours, and shapes that distinguish series without colours.
 const MARKS: [Mark; 4] = [
@@ -90,7 +90,7 @@ fn envelope(study: &StiffSprings) -> Svg {
     ];
     series.retain(|series| !series.points.is_empty());
     series.extend(around_each_psi(study, |largest| largest.crest.velocity));
-    chart::draw(&Chart {
+    chart::draw(&LineChart {
         title: "Final velocity and its bounds for stiff springs",
         x: kappa_axis(study),
         y: ChartAxis {
@@ -109,7 +109,7 @@ fn correction(study: &StiffSprings) -> Svg {
     let name = format!("next order, {} κ^{{−5/4}}", number(-study.peak.correction, 6));
     let mut series = vec![line(&name, points.collect(), THEORY)];
     series.extend(around_each_psi(study, |largest| study.peak.velocity - largest.scaled()));
-    chart::draw(&Chart {
+    chart::draw(&LineChart {
         title: "Distance of the largest final velocity from its limit",
         x: kappa_axis(study),
         y: ChartAxis {
@@ -140,7 +140,7 @@ fn profile(study: &StiffSprings) -> Svg {
         let name = format!("κ = {}", number(first.kappa, 3));
         series.push(marks(&name, collisions.iter().map(|c| (c.phase, c.velocity)), mark));
     }
-    chart::draw(&Chart {
+    chart::draw(&LineChart {
         title: "F(phase): the scaled final velocity of stiff collisions",
         x: ChartAxis {
             name: "phase φ of the last onset, in half swings",
@@ -163,7 +163,7 @@ fn counts(study: &StiffSprings) -> Svg {
     }
     let ratios = study.velocities.iter().flatten().map(|found| found.count_ratio);
     let highest = ratios.fold(1.0, f64::max);
-    chart::draw(&Chart {
+    chart::draw(&LineChart {
         title: "Number of switches over √κ t_c/π; dashed: 2 min(t_1, t_c − t_1)/t_c",
         x: kappa_axis(study),
         y: ChartAxis {

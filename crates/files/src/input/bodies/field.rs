@@ -8,7 +8,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use stickslip_model::spheres::Vector3;
-use stickslip_model::spheres::quantity::Quantity;
+use stickslip_model::spheres::quantity::PhysicalQuantity;
 
 /// A struct that is written as an object. serde alone would also accept an array of its fields.
 #[derive(Clone, Default)]
@@ -46,8 +46,12 @@ pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
 ///
 /// # Errors
 /// The number is missing or out of range, or the field holds something else.
-pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result<f64, String> {
-    let Quantity { name, expected, .. } = quantity;
+pub fn number(
+    place: &str,
+    quantity: &PhysicalQuantity,
+    value: Option<&Value>,
+) -> Result<f64, String> {
+    let PhysicalQuantity { name, expected, .. } = quantity;
     let number = match value {
         None => return Err(format!("{place}.{name} is missing; expected {expected}")),
         Some(value) => value

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use stickslip_model::Law;
 use stickslip_model::spheres::quantity;
-use stickslip_model::spheres::quantity::Quantity;
+use stickslip_model::spheres::quantity::PhysicalQuantity;
 use stickslip_model::spheres::{
     Constants, Elasticity, Forces, Motion, Sphere, Surface, Wall, WallMotion,
 };
@@ -289,11 +289,11 @@ impl WallMotionFields {
 
 impl SurfaceFields {
     fn resolve(&self, law: Law) -> Result<Forces, String> {
-        let number = |quantity: &Quantity, value: &Option<Value>| {
+        let number = |quantity: &PhysicalQuantity, value: &Option<Value>| {
             number("surface", quantity, value.as_ref())
         };
         let friction = number(&quantity::FRICTION, &self.friction)?;
-        let given = |quantity: &Quantity, value: &Option<Value>| {
+        let given = |quantity: &PhysicalQuantity, value: &Option<Value>| {
             value.as_ref().map(|_| number(quantity, value)).transpose()
         };
         let constants = Constants {

@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::ByteRecord;
 use stickslip_model::Law;
 use stickslip_model::spheres::Encounter;
-use stickslip_model::spheres::quantity::Quantity;
+use stickslip_model::spheres::quantity::PhysicalQuantity;
 
 use super::file::{File, Slot};
 use super::velocities::{QUANTITIES, Velocities, VelocitiesError};
@@ -38,7 +38,7 @@ struct Column {
 #[derive(Clone, Copy)]
 enum Source {
     Value(f64),
-    Column { index: usize, quantity: &'static Quantity },
+    Column { index: usize, quantity: &'static PhysicalQuantity },
 }
 
 /// The options of the velocities, as [`QUANTITIES`].
@@ -108,8 +108,9 @@ impl ImpactReading {
                 require_foreign(&String::from_utf8_lossy(name), &numbers)?;
             }
         }
-        let place =
-            |quantity: &Quantity| names.iter().position(|it| *it == quantity.name.as_bytes());
+        let place = |quantity: &PhysicalQuantity| {
+            names.iter().position(|it| *it == quantity.name.as_bytes())
+        };
         self.velocities = velocities(place, options)?;
         let moving = self.columns.iter().find(|column| column.slot.unit().is_some());
         if let (Some(_), Some(Column { name, .. })) = (self.velocities, moving) {
@@ -179,7 +180,7 @@ impl Reading for ImpactReading {
 
 /// The velocities that columns and options give.
 fn velocities(
-    place: impl Fn(&Quantity) -> Option<usize>,
+    place: impl Fn(&PhysicalQuantity) -> Option<usize>,
     options: [Option<f64>; 4],
 ) -> Result<Option<Velocities<Source>>, String> {
     let mut given = [None; 4];

@@ -1,6 +1,6 @@
 //! Velocities of the surfaces at the contact, which may stand for the motions of the bodies.
 
-use stickslip_model::spheres::quantity::{self, Quantity};
+use stickslip_model::spheres::quantity::{self, PhysicalQuantity};
 
 /// The velocities of the surfaces, in either of two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub enum Velocities<T> {
 }
 
 /// The quantities of [`Velocities`], in the order of [`Velocities::new`].
-pub const QUANTITIES: [&Quantity; 4] = [
+pub const QUANTITIES: [&PhysicalQuantity; 4] = [
     &quantity::NORMAL_VELOCITY,
     &quantity::TANGENTIAL_VELOCITY,
     &quantity::SPEED,

@@ -1,6 +1,6 @@
 //! The two systems whose runs make courses: the paper's contact and the contact of any law.
 
-use stickslip_contact::general::{self, CREST, GeneralContact, Mode, REVERSAL};
+use stickslip_contact::general::{self, CREST, ContactMode, GeneralContact, REVERSAL};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::{Regularized, components};
 use stickslip_contact::{Regime, Side};
@@ -47,7 +47,7 @@ pub enum Begins {
     /// A phase.
     Phase,
     /// Nothing more; the contact has ended.
-    End,
+    ContactEnd,
 }
 
 impl Followed<{ components::STATE }> for Regularized {
@@ -84,7 +84,7 @@ impl Followed<{ components::STATE }> for Regularized {
     }
 
     fn begins(event: &SwitchEvent<Phase, { components::STATE }>) -> Begins {
-        if event.guard == END { Begins::End } else { Begins::Phase }
+        if event.guard == END { Begins::ContactEnd } else { Begins::Phase }
     }
 
     fn flight(&self, _phase: Phase, _y: &State<{ components::STATE }>) -> f64 {
@@ -93,10 +93,10 @@ impl Followed<{ components::STATE }> for Regularized {
 }
 
 impl Followed<{ general::STATE }> for GeneralContact {
-    type Mode = Mode;
+    type Mode = ContactMode;
     const CLOCK: usize = general::T;
 
-    fn start(&self) -> Start<Mode, { general::STATE }> {
+    fn start(&self) -> Start<ContactMode, { general::STATE }> {
         Start { mode: self.first(), s: 0.0, state: Self::start(self) }
     }
 
@@ -108,7 +108,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
         Self::clock_rate(self, y)
     }
 
-    fn snapshot(&self, mode: Mode, y: &State<{ general::STATE }>) -> Snapshot {
+    fn snapshot(&self, mode: ContactMode, y: &State<{ general::STATE }>) -> Snapshot {
         Snapshot {
             time: y[general::T],
             compression: self.overlap(mode, y),
@@ -120,21 +120,21 @@ impl Followed<{ general::STATE }> for GeneralContact {
         }
     }
 
-    fn phase(mode: Mode) -> (Regime, Side) {
+    fn phase(mode: ContactMode) -> (Regime, Side) {
         (mode.regime, mode.side)
     }
 
-    fn begins(event: &SwitchEvent<Mode, { general::STATE }>) -> Begins {
+    fn begins(event: &SwitchEvent<ContactMode, { general::STATE }>) -> Begins {
         match event.guard {
             REVERSAL if event.from == event.to => Begins::Nothing,
             REVERSAL | CREST => Begins::Part,
-            END if event.from.stage == event.to.stage => Begins::End,
+            END if event.from.stage == event.to.stage => Begins::ContactEnd,
             END if event.from.regime == event.to.regime => Begins::Part,
             _ => Begins::Phase,
         }
     }
 
-    fn flight(&self, mode: Mode, y: &State<{ general::STATE }>) -> f64 {
+    fn flight(&self, mode: ContactMode, y: &State<{ general::STATE }>) -> f64 {
         Self::flight(self, mode, y)
     }
 }

@@ -203,7 +203,7 @@ impl<S: Followed<N>, const N: usize> Observer<S::Mode, N> for Record<S, N> {
         }
         ended.end = event.before;
         ended.steps.end = steps;
-        if begins == Begins::End {
+        if begins == Begins::ContactEnd {
             self.flight = self.system.flight(event.from, &event.before);
             return;
         }

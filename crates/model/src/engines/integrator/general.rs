@@ -1,9 +1,9 @@
 //! The integration of a contact with any law.
 
-use stickslip_contact::general::{CREST, DAMPING, GeneralContact, Mode, REVERSAL, STATE, T};
+use stickslip_contact::general::{CREST, ContactMode, DAMPING, GeneralContact, REVERSAL, STATE, T};
 use stickslip_contact::phase::END;
 use stickslip_contact::{
-    Collision, Contact, CoulombTest, End, EnergyLedger, Law, Normal, Regime, Switch,
+    Collision, Contact, ContactEnd, CoulombTest, EnergyLedger, Law, Normal, Regime, Switch,
 };
 use stickslip_solver::{
     EmbeddedPair, Observer, Options, Outcome, ReadableSystem, RunError, Start, State, Statistics,
@@ -15,7 +15,7 @@ use crate::engines::domain;
 use crate::engines::error::CollisionError;
 
 /// Integrates one collision into `collision`, while `course` observes the run too.
-pub fn collide<O: Observer<Mode, STATE>>(
+pub fn collide<O: Observer<ContactMode, STATE>>(
     pair: EmbeddedPair,
     contact: Contact,
     options: &Options,
@@ -67,7 +67,7 @@ struct Account<'a> {
     system: GeneralContact,
     collision: &'a mut Collision,
     /// The phase so far.
-    phase: Mode,
+    phase: ContactMode,
     /// The state in which it began.
     entered: State<STATE>,
     /// The time at which it began.
@@ -111,7 +111,7 @@ impl Account<'_> {
     }
 
     /// Records the switch from the phase, which ends in state `before`, to `next`.
-    fn switch(&mut self, next: Mode, before: &State<STATE>, y: &State<STATE>) {
+    fn switch(&mut self, next: ContactMode, before: &State<STATE>, y: &State<STATE>) {
         self.leave(before);
         self.phase = next;
         self.collision.switches.push(Switch {
@@ -126,7 +126,7 @@ impl Account<'_> {
     }
 
     /// Closes the account in the mode and the state at the end.
-    fn finish(mut self, mode: Mode, mut y: State<STATE>) {
+    fn finish(mut self, mode: ContactMode, mut y: State<STATE>) {
         if let Some((guard, length)) = self.system.last_slip(mode, &y) {
             let (next, after) = self.system.transition(mode, guard, 0.0, &y);
             self.switch(next, &y, &after);
@@ -154,8 +154,8 @@ impl Account<'_> {
         };
         // Where the force is limited, damping takes the rest of the compression.
         let [taken, compression_left] = match end {
-            End::Force => [0.0, compression],
-            End::Overlap => [compression, 0.0],
+            ContactEnd::Force => [0.0, compression],
+            ContactEnd::Overlap => [compression, 0.0],
         };
         let tangential_damping = system.taken_by_dashpot(y);
         let normal_final = 0.5 * rate * rate;
@@ -173,8 +173,8 @@ impl Account<'_> {
     }
 }
 
-impl Observer<Mode, STATE> for Account<'_> {
-    fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
+impl Observer<ContactMode, STATE> for Account<'_> {
+    fn on_switch(&mut self, event: &SwitchEvent<ContactMode, STATE>) {
         match event.guard {
             REVERSAL => {
                 // A strong dashpot stops the motion, and the rest is noise.

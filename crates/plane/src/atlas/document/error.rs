@@ -1,7 +1,7 @@
 //! What a reader of documents refuses.
 
 use stickslip_model::InvalidValue;
-use stickslip_tracer::{Finding, SubdivisionError};
+use stickslip_tracer::regions::{Finding, SubdivisionError};
 
 use super::layout::SCHEMA;
 use crate::chart::Chart;

@@ -1,7 +1,11 @@
 //! How an atlas is read back from its document.
 
 use stickslip_model::Contact;
-use stickslip_tracer::{Curve, Extremum, Finding, Location, Node, Point, Subdivision, Vertex};
+use stickslip_tracer::{
+    Curve, Node, Point, Vertex,
+    regions::{Finding, Location, Subdivision},
+    tracing::Extremum,
+};
 
 use super::error::AtlasDocumentError;
 use super::layout::{

@@ -1,7 +1,7 @@
 //! How the document of an atlas is made.
 
 use stickslip_model::Law;
-use stickslip_tracer::{Curve, Extremum, Node};
+use stickslip_tracer::{Curve, Node, tracing::Extremum};
 
 use super::layout::{
     AtlasDocument, BoundaryEnd, BoundaryFields, ExtremalParameter, ExtremumFields, RegionFields,

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use stickslip_solver::margin::Place;
 use stickslip_solver::method::Columns;
 use stickslip_solver::sensitivity::sensitivities;
-use stickslip_solver::sliding::{Filippov, Side};
+use stickslip_solver::sliding::{Filippov, SurfaceSide};
 use stickslip_solver::{Dop853, Number, Options, Start, State};
 
 use crate::erased::{margin, margins, run};
@@ -87,9 +87,9 @@ fn the_margin_of_the_steady_orbit_vanishes_at_the_onset() {
         let system = Filippov(Driven(force));
         let mut events = Vec::new();
         let end = run(Dop853, &system, start, start.s + PERIOD, &options, &mut events).unwrap();
-        let slid = events.iter().any(|event| event.to.sides() == [Side::Sliding]);
+        let slid = events.iter().any(|event| event.to.sides() == [SurfaceSide::Sliding]);
         assert_eq!(slid, slides, "{force} {events:?}");
-        assert_eq!(end.mode.sides(), [Side::Below]);
+        assert_eq!(end.mode.sides(), [SurfaceSide::Below]);
     }
 }
 

@@ -3,9 +3,11 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{Relays, ran, refused, switches, zero};
-use Side::{Above, Below, Sliding};
+use SurfaceSide::{Above, Below, Sliding};
 use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
-use stickslip_solver::sliding::{Filippov, Refusal, SampledFilippov, Side, Switched, TwoFields};
+use stickslip_solver::sliding::{
+    Filippov, Refusal, SampledFilippov, SurfaceSide, Switched, TwoFields,
+};
 use stickslip_solver::{Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State};
 
 use crate::erased::{run, run_backwards};

@@ -1,7 +1,9 @@
 //! Clocks and rest of a system that slides.
 
 use stickslip_solver::dynamic::DynamicStart;
-use stickslip_solver::sliding::{Filippov, SampledFilippov, Side, Switched, SwitchedDynamic};
+use stickslip_solver::sliding::{
+    Filippov, SampledFilippov, SurfaceSide, Switched, SwitchedDynamic,
+};
 use stickslip_solver::{Direction, Dop853, Guard, Number, Options, Schedule, Start, State, Times};
 
 use crate::erased::{run, run_dynamic};
@@ -72,7 +74,7 @@ fn a_belt_turns_at_times() {
     for (seen, expected) in seen.iter().zip(expected) {
         assert!((seen.0 - expected.0).abs() < 1e-13 && seen.1 == expected.1, "{seen:?}");
     }
-    assert_eq!((end.mode.own, end.mode.sides()), (0.5, &[Side::Sliding][..]));
+    assert_eq!((end.mode.own, end.mode.sides()), (0.5, &[SurfaceSide::Sliding][..]));
     // After 2 it has gone 1, and then 0.15625 on and back, and 0.75 back.
     assert!((end.state[0] - 1.0).abs() < 1e-12, "{}", end.state);
 
@@ -137,6 +139,6 @@ fn a_ball_that_has_landed_slides_to_rest() {
     let end = run(Dop853, &ball, start, 6.0, &options, &mut switches).unwrap().finished().unwrap();
     let stops = switches.last().expect("it stops");
     assert!((stops.s - 5.0).abs() < 1e-9 && stops.guard == 0, "{stops:?}");
-    assert_eq!((end.mode.own, end.mode.sides()), (Ball::Lies, &[Side::Sliding][..]));
+    assert_eq!((end.mode.own, end.mode.sides()), (Ball::Lies, &[SurfaceSide::Sliding][..]));
     assert!(end.state[2].abs() < 1e-12);
 }

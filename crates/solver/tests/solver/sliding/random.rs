@@ -5,7 +5,7 @@
 //! the slope. If −N R is a P-matrix, with the normals N, then only one solution is so.
 
 use super::Relays;
-use stickslip_solver::sliding::{Filippov, Refusal, SampledFilippov, Side, SlidingMode};
+use stickslip_solver::sliding::{Filippov, Refusal, SampledFilippov, SlidingMode, SurfaceSide};
 use stickslip_solver::{Dop853, HybridSystem, Options, Outcome, Recorder, RunError, Start, State};
 
 use crate::erased::run;
@@ -86,8 +86,9 @@ fn follow<S, const N: usize, const K: usize, const G: usize>(
         }
         Err(error) => panic!("{error:?} {:?}", events.last()),
     };
-    let together =
-        |mode: SlidingMode<()>| mode.sides().iter().filter(|side| **side == Side::Sliding).count();
+    let together = |mode: SlidingMode<()>| {
+        mode.sides().iter().filter(|side| **side == SurfaceSide::Sliding).count()
+    };
     seen.together += events.iter().filter(|event| together(event.to) > 1).count();
     for _ in 0..200 {
         let s = end * random.f64();

@@ -1,8 +1,8 @@
 //! Several surfaces at once.
 
 use super::{Relays, ran, refused, switches, zero};
-use Side::{Above, Below, Sliding};
-use stickslip_solver::sliding::{Filippov, Refusal, Side, Switched};
+use SurfaceSide::{Above, Below, Sliding};
+use stickslip_solver::sliding::{Filippov, Refusal, SurfaceSide, Switched};
 use stickslip_solver::{Number, State};
 
 /// Two masses on a belt, each on a spring to a wall, with a spring between them. Both stick; one

@@ -1,6 +1,6 @@
 //! The comparison of the labels of runs and of regions, and its statistics.
 
-use crate::regions::region::Side;
+use crate::regions::region::CurveSide;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::limit::upper_limit;
 use crate::regions::verify::report::{
@@ -83,7 +83,7 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
                 self.wrong_random += u64::from(!right);
             }
             Origin::Near { curve, side, .. } => {
-                self.beside[curve][usize::from(side == Side::Right)] = true;
+                self.beside[curve][usize::from(side == CurveSide::Right)] = true;
             }
         }
         if right {

@@ -2,7 +2,7 @@
 
 use crate::regions::finding::{Euler, Finding};
 use crate::regions::locate::Location;
-use crate::regions::region::Side;
+use crate::regions::region::CurveSide;
 use crate::regions::subdivision::Subdivision;
 use crate::window::Point;
 
@@ -30,7 +30,7 @@ pub enum Origin {
         /// The index of the curve.
         curve: usize,
         /// The side of the curve.
-        side: Side,
+        side: CurveSide,
         /// The distance from the curve.
         distance: f64,
     },
@@ -105,7 +105,7 @@ pub struct Verification<Label, Error> {
 impl<Label, Error> Verification<Label, Error> {
     /// Pairs of points in one region, the first with the label of the region and the second with
     /// another label. Between them passes a boundary, which
-    /// [`Tracer::look_between`](crate::Tracer::look_between) can find.
+    /// [`Tracer::look_between`](crate::tracing::Tracer::look_between) can find.
     #[must_use]
     pub fn brackets(&self) -> Vec<[Point; 2]> {
         let bracket = |mismatch: &Mismatch<Label>| {

@@ -3,7 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
-use stickslip_tracer::{Location, Point, VerifyOptions, Vertex, VertexKind, verify_with};
+use stickslip_tracer::{
+    Point, Vertex, VertexKind,
+    regions::{Location, VerifyOptions, verify_with},
+};
 
 use crate::subdivision::planes::{KnownPlane, TOLERANCE, UNIT, circle, even};
 

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use stickslip_tracer::{
-    Curve, Finding, Node, Origin, Point, Side, Subdivision, SubdivisionError, VerifyOptions,
-    Vertex, VertexKind, verify,
+    Curve, Node, Point, Vertex, VertexKind,
+    regions::{CurveSide, Finding, Origin, Subdivision, SubdivisionError, VerifyOptions, verify},
 };
 
 use crate::subdivision::planes::{
@@ -235,7 +235,7 @@ fn a_misplaced_curve_is_found_beside_it() {
     for mismatch in &verification.mismatches {
         assert!(matches!(
             mismatch.checkpoint.origin,
-            Origin::Near { curve: 1, side: Side::Right, distance } if distance < 1.001e-6
+            Origin::Near { curve: 1, side: CurveSide::Right, distance } if distance < 1.001e-6
         ));
     }
 }

@@ -4,7 +4,8 @@ use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 use stickslip_tracer::{
-    Curve, Family, FreeRun, Node, Point, Subdivision, SubdivisionError, Vertex, VertexKind, Window,
+    Curve, Family, FreeRun, Node, Point, Vertex, VertexKind, Window,
+    regions::{Subdivision, SubdivisionError},
 };
 
 pub const TOLERANCE: f64 = 1e-10;

@@ -1,7 +1,7 @@
 //! The numbers of the file, by name, so that columns may give them.
 
 use serde_json::{Value, json};
-use stickslip_model::spheres::quantity::{self, Quantity};
+use stickslip_model::spheres::quantity::{self, PhysicalQuantity};
 
 use super::{
     File, MaterialFields, MotionFields, Object, POSITION, SPHERES, SphereFields, SurfaceFields,
@@ -26,7 +26,7 @@ pub enum Slot {
 type Field<T> = fn(&mut T) -> &mut Option<Value>;
 
 /// A quantity, and its field in an object.
-pub type Scalar<T> = (&'static Quantity, Field<T>);
+pub type Scalar<T> = (&'static PhysicalQuantity, Field<T>);
 
 /// A component of a vector, its unit, and the field of the vector in an object.
 pub type Component<T> = (usize, &'static str, Field<T>);
@@ -75,7 +75,7 @@ const SURFACE: [Scalar<SurfaceFields>; 16] = [
 
 impl Slot {
     /// The quantity of a number that is not a component of a vector.
-    pub fn quantity(&self) -> Option<&'static Quantity> {
+    pub fn quantity(&self) -> Option<&'static PhysicalQuantity> {
         match self {
             Self::Sphere(_, (quantity, _))
             | Self::Material(_, (quantity, _))
