@@ -11,8 +11,8 @@
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
 //! - Where friction decays with the velocity, its coefficient has a kink where the velocity
-//!   vanishes. The mode has the sign of the velocity ([`ContactMode::heading`]), and a reversal is an
-//!   event.
+//!   vanishes. The mode has the sign of the velocity ([`ContactMode::heading`]), and a reversal is
+//!   an event.
 //! - For the same reason a contact may start in slip: [`Beginning`]. The ratio of both forces at
 //!   the start is known in closed form, while a guard near zero would be decided by rounding. So
 //!   this start is not an event, and its margin exists beyond the contacts that start so.

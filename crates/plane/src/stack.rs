@@ -53,8 +53,8 @@ pub struct DampingLayer {
 /// contact begins in stick, so that all regions are others, and nothing is followed from there.
 ///
 /// Each atlas is traced as [`atlas::trace`] does it. The changes come from atlases of their own,
-/// see [`stickslip_tracer::stack::Stack`]; `as_stacked` tells whether both agree. The atlases are computed
-/// on the threads of the current rayon pool. `progress` is told about each of them.
+/// see [`stickslip_tracer::stack::Stack`]; `as_stacked` tells whether both agree. The atlases are
+/// computed on the threads of the current rayon pool. `progress` is told about each of them.
 ///
 /// ```
 /// use stickslip_plane::atlas::Frame;

@@ -1,9 +1,9 @@
 //! Tables of ε_t and ε_n.
 //!
-//! A particle code can look the restitution up. [`run`] makes a [`RestitutionTable`] of it over (κ, ψ) at one
-//! damping, or over the velocities (g_n, g_t) of two bodies, with errors below a bound everywhere.
-//! Pieces of polynomials follow the boundaries on which the switches of a collision change and on
-//! which ε_t has kinks or roots.
+//! A particle code can look the restitution up. [`run`] makes a [`RestitutionTable`] of it over (κ,
+//! ψ) at one damping, or over the velocities (g_n, g_t) of two bodies, with errors below a bound
+//! everywhere. Pieces of polynomials follow the boundaries on which the switches of a collision
+//! change and on which ε_t has kinks or roots.
 //!
 //! The two axes are x and y in the code: κ and ψ, or g_n and g_t in m/s.
 //!

@@ -6,8 +6,8 @@ use super::{Binary, Formula, FormulaNode, Graph, Unary, Variable};
 
 impl Graph {
     /// The derivative of a formula, where `rate` gives the derivatives of what it reads. At a kink
-    /// it is the derivative of the piece that [`FormulaNode::Select`] and the like choose, and a jump is
-    /// left out.
+    /// it is the derivative of the piece that [`FormulaNode::Select`] and the like choose, and a
+    /// jump is left out.
     pub fn slope(
         &mut self,
         formula: Formula,

@@ -45,9 +45,9 @@ const LONGEST: f64 = 10.0;
 /// The contact begins after the part `phase` of a step, from 0 to below 1: the gap is then
 /// phase·dt at the scaled velocity 1.
 ///
-/// A contact that ends where the force does ([`ContactEnd::Force`]) is computed as particle codes do it,
-/// with a force that is kept from attracting until the overlap vanishes. Without steps both are the
-/// same.
+/// A contact that ends where the force does ([`ContactEnd::Force`]) is computed as particle codes
+/// do it, with a force that is kept from attracting until the overlap vanishes. Without steps both
+/// are the same.
 ///
 /// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the
 /// contact has not ended after ten times `duration` (its duration without steps) or after 10⁹
