@@ -68,10 +68,10 @@ pub use native::{Jump, NativeSystem, ValuedSystem};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, outcome_name};
 pub use run::Runnable;
-pub use sensitivity::{By, Moving, Sensitivities, SensitivityError};
+pub use sensitivity::{By, Moving, SensitivityError, SystemSensitivities};
 pub use sliding::NotSliding;
 pub use stickslip_number::InvalidValue;
-pub use system::{Component, Condition, Mode, Next, Parameter, Rest, Rule, System, Trigger};
+pub use system::{Component, Condition, Mode, Next, Parameter, RestRule, Rule, System, Trigger};
 pub use text::{TextError, format};
 
 #[doc = include_str!("../README.md")]

@@ -4,7 +4,8 @@ use stickslip_solver::dynamic::{
     DynamicObserver, DynamicRecorder, DynamicRun, DynamicSegment, DynamicSwitch, run_dynamic_with,
 };
 use stickslip_solver::{
-    EmbeddedPair, Grazing, Options, Outcome, Pole, Rest, RunError, hybrid::Preempted,
+    EmbeddedPair, Grazing, Options, Outcome, Rest, RunError,
+    hybrid::{Pole, Preempted},
 };
 
 use crate::run::Runnable;

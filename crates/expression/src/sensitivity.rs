@@ -25,7 +25,7 @@ pub enum By {
 
 /// A run with its derivatives.
 #[derive(Clone, Debug)]
-pub struct Sensitivities {
+pub struct SystemSensitivities {
     /// The run. Its states have the components of the system, and then, for each thing it is
     /// differentiated by, the derivative of each component at a fixed time.
     pub recording: Recording,
@@ -101,7 +101,7 @@ impl System {
         method: EmbeddedPair,
         end: Option<f64>,
         options: &Options,
-    ) -> Result<Sensitivities, SensitivityError> {
+    ) -> Result<SystemSensitivities, SensitivityError> {
         let compiled = self.compile_as_it_is()?;
         if let Some(beyond) = by.iter().find(|by| match by {
             By::Parameter(place) => *place >= self.parameters.len(),
@@ -142,7 +142,7 @@ impl System {
                 place.state_by.iter_mut().for_each(|by| by.truncate(own));
             }
         }
-        Ok(Sensitivities { recording, places })
+        Ok(SystemSensitivities { recording, places })
     }
 }
 

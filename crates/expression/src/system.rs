@@ -176,12 +176,12 @@ pub struct Rule {
     /// Where the run goes on.
     pub next: Next,
     /// How the run goes on where events of the rule accumulate; otherwise it ends there.
-    pub rest: Option<Rest>,
+    pub rest: Option<RestRule>,
 }
 
 /// How a run goes on behind a place where events accumulate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rest {
+pub struct RestRule {
     /// The mode that follows.
     pub next: usize,
     /// New values of components, made of the state behind the last event.

@@ -102,7 +102,7 @@ pub struct OrbitRegions {
     /// The orbit from which they were found.
     pub orbit: OrbitRecord,
     /// The regions, in the layout of every atlas.
-    pub atlas: stickslip_tracer::document::AtlasDocument<FollowedOrbits, OrbitBoundary>,
+    pub atlas: stickslip_tracer::document::FamilyAtlasDocument<FollowedOrbits, OrbitBoundary>,
 }
 
 impl Verdict {
@@ -314,7 +314,8 @@ impl Document<OrbitRegions> {
         let system = orbits.system();
         let axes = parameters.map(|place| &*system.parameters[place].name);
         let options = options.of_atlas(atlas.plane.window());
-        let atlas = stickslip_tracer::document::AtlasDocument::new(atlas, &options, name, axes);
+        let atlas =
+            stickslip_tracer::document::FamilyAtlasDocument::new(atlas, &options, name, axes);
         let orbit = OrbitRecord::new(system, orbit);
         Self::new(orbits, REGIONS, name, OrbitRegions { orbit, atlas })
     }

@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use stickslip_expression::{
-    Binary, Component, Condition, Formula, Graph, Inputs, Mode, Next, Parameter, Program, Rest,
+    Binary, Component, Condition, Formula, Graph, Inputs, Mode, Next, Parameter, Program, RestRule,
     Rule, System, Trigger, Unary, Variable,
 };
 use stickslip_solver::Direction;
@@ -300,7 +300,7 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
         Some((next, _)) if next >= modes => {
             return Err(bad_input(format!("there is no mode {next}")));
         }
-        Some((next, after)) => Some(Rest { next, changes: changes(after)? }),
+        Some((next, after)) => Some(RestRule { next, changes: changes(after)? }),
         None => None,
     };
     Ok(Rule {

@@ -74,7 +74,7 @@
 //! | switches that accumulate, as when a ball comes to rest | [`Outcome::Zeno`], or [`HybridSystem::rest`] to go on behind them |
 //! | events at given times | [`Guard::clock`] and [`HybridSystem::schedule`] |
 //! | values that only events change | fields of the mode |
-//! | a mode that cannot be copied, as a list | its number in a [`ModeTable`] |
+//! | a mode that cannot be copied, as a list | its number in a [`ModeTable`](hybrid::ModeTable) |
 //! | a quick problem | [`Closures`] |
 //! | the steps one by one | [`Stepper`], an iterator |
 //! | derivatives with respect to parameters | [`fn@sensitivity::sensitivities`] |
@@ -170,7 +170,7 @@ pub mod sensitivity;
 
 pub use error::RunError;
 pub use hybrid::{
-    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, ReadableSystem, Rest, Run,
+    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, ReadableSystem, Rest, Run,
     Schedule, Start, Statistics, SwitchEvent, Times,
 };
 pub use method::{Dop853, Dopri5, EmbeddedPair, Method, State};

@@ -71,7 +71,7 @@ pub const SCHEMA: &str = "stickslip.family-atlas/1";
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AtlasDocument<Label, Margin> {
+pub struct FamilyAtlasDocument<Label, Margin> {
     /// The name of the layout, [`SCHEMA`].
     pub schema: String,
     /// What was traced, in words of the caller.
@@ -135,7 +135,7 @@ pub enum DocumentError {
     },
 }
 
-impl<Label: Clone + Ord, Margin: Clone> AtlasDocument<Label, Margin> {
+impl<Label: Clone + Ord, Margin: Clone> FamilyAtlasDocument<Label, Margin> {
     /// The document of an atlas that was made with `options`. `family` and `axes` say in words what
     /// was traced; the coordinates have units there.
     pub fn new(
@@ -200,7 +200,7 @@ impl<Label: Clone + Ord, Margin: Clone> AtlasDocument<Label, Margin> {
     }
 }
 
-impl AtlasDocument<Itinerary, Margin> {
+impl FamilyAtlasDocument<Itinerary, Margin> {
     /// The document of an atlas of a hybrid system that was made with `options`.
     #[must_use]
     pub fn of_runs(

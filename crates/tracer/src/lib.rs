@@ -11,8 +11,8 @@
 //! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
 //!   lies.
 //! - [`verify`](fn@regions::verify) compares the labels of the regions with runs at random points.
-//! - [`follow`](fn@tracing::follow) follows one boundary from a place on it, and records what the caller wants to
-//!   know along it.
+//! - [`follow`](fn@tracing::follow) follows one boundary from a place on it, and records what the
+//!   caller wants to know along it.
 //! - An [`Atlas`] has all of this, and knows which regions are in doubt. A [`Surveyor`] makes it,
 //!   on the threads of the caller, and looks again where runs disagree.
 //! - A [`Stack`] holds atlases over a third parameter, and locates the changes between them.

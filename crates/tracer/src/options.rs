@@ -140,7 +140,8 @@ pub enum TraceError<E: std::error::Error + 'static> {
          boundaries are traced; choose a smaller one"
     )]
     TooManyCurves {
-        /// The number of regions that were counted, see [`Tracer::count`](crate::tracing::Tracer::count).
+        /// The number of regions that were counted, see
+        /// [`Tracer::count`](crate::tracing::Tracer::count).
         regions: usize,
         /// The number of curves that were counted.
         curves: usize,

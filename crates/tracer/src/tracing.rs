@@ -56,7 +56,7 @@ pub(crate) mod seed;
 pub(crate) mod special_points;
 pub(crate) mod tracer;
 
-pub use branch::Branch;
+pub use branch::BoundaryWalk;
 pub use end::{End, Special, Stop};
 pub use extrema::Extremum;
 pub use follow::{Followed, Monitor, MonitorZero, follow};

@@ -223,7 +223,7 @@ fn runs(plane: &SystemPlane, arguments: &TraceArguments) -> Result<(), Failure> 
     })?;
     let atlas = atlas.map_err(|error| Failure::Family(error.to_string()))?;
     let document =
-        stickslip_tracer::document::AtlasDocument::of_runs(&atlas, &options, &plane.names);
+        stickslip_tracer::document::FamilyAtlasDocument::of_runs(&atlas, &options, &plane.names);
     let mut stored = vec![write_json(file, &document)?];
     if let Some(plot) = plot {
         stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.names)))?);

@@ -7,7 +7,7 @@ use super::formula::Truth;
 use super::reader::Reader;
 use super::tokens::Token;
 use crate::graph::{Binary, Variable};
-use crate::system::{Next, Rest, Rule, Trigger};
+use crate::system::{Next, RestRule, Rule, Trigger};
 
 impl Reader<'_> {
     /// `when …`, `at …` or `every …`, up to the end of its line.
@@ -170,7 +170,7 @@ impl Reader<'_> {
             return Err(self.error_at(at, message.to_owned()));
         }
         self.expect("->")?;
-        rule.rest = Some(Rest { next: self.target()?, changes: Vec::new() });
+        rule.rest = Some(RestRule { next: self.target()?, changes: Vec::new() });
         self.expect_end()
     }
 

@@ -52,7 +52,7 @@ pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     let Schema { schema } = json::parse(&text).map_err(unusable)?;
     sealed::check(&text).map_err(|damaged| unusable(damaged.to_string()))?;
     if schema == stickslip_tracer::document::SCHEMA {
-        let document: stickslip_tracer::document::AtlasDocument<Itinerary, Margin> =
+        let document: stickslip_tracer::document::FamilyAtlasDocument<Itinerary, Margin> =
             json::parse(&text).map_err(unusable)?;
         let names = document.names();
         let atlas = document.atlas().map_err(|error| unusable(error.to_string()))?;

@@ -9,7 +9,7 @@ use stickslip_plane::sealed;
 use stickslip_solver::margin::{Margin, Place};
 use stickslip_tracer::{
     Atlas, AtlasOptions, Names, Point, RunNames,
-    document::{AtlasDocument, SCHEMA},
+    document::{FamilyAtlasDocument, SCHEMA},
     hybrid::Itinerary,
     regions::Location,
     tracing::{End, Followed, SpecialPoint},
@@ -77,7 +77,7 @@ impl FamilyAtlas {
                 return Err(format!("schema is {}; expected {SCHEMA:?}", value["schema"]));
             }
             sealed::check(text.as_bytes()).map_err(|damaged| damaged.to_string())?;
-            let document: AtlasDocument<Itinerary, Margin> =
+            let document: FamilyAtlasDocument<Itinerary, Margin> =
                 serde_json::from_str(text).map_err(|error| error.to_string())?;
             let (names, options) = (document.names(), document.options);
             let atlas = document.atlas().map_err(|error| error.to_string())?;
@@ -88,7 +88,7 @@ impl FamilyAtlas {
 
     /// The document of the atlas as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        let document = || AtlasDocument::of_runs(&self.atlas, &self.options, &self.names);
+        let document = || FamilyAtlasDocument::of_runs(&self.atlas, &self.options, &self.names);
         py.detach(|| sealed::to_string(&document())).map_err(failed)
     }
 

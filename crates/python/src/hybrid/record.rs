@@ -8,7 +8,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_solver::dynamic::{DynamicDense, DynamicEvent, DynamicObserver};
 use stickslip_solver::sliding::{Refusal, SurfaceSide};
-use stickslip_solver::{Grazing, Pole, Rest, hybrid::Preempted};
+use stickslip_solver::{
+    Grazing, Rest,
+    hybrid::{Pole, Preempted},
+};
 
 use crate::background::Signals;
 use crate::hybrid::segments::{Segments, fraction};

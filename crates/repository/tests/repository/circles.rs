@@ -14,13 +14,13 @@ use crate::root;
 use crate::rust::{Used, code, defined, is_word, uses, without_tests};
 
 /// The path of a module, without the name of its crate.
-type Module = Vec<String>;
+pub type Module = Vec<String>;
 
 /// The code of one file.
-struct File {
+pub struct File {
     /// What is left without comments, texts, tests and `use`.
-    code: String,
-    uses: Vec<Used>,
+    pub code: String,
+    pub uses: Vec<Used>,
     defined: BTreeSet<String>,
 }
 
@@ -37,10 +37,10 @@ impl File {
 }
 
 /// The files of a crate by their modules.
-struct Crate(BTreeMap<Module, File>);
+pub struct Crate(pub BTreeMap<Module, File>);
 
 impl Crate {
-    fn read(folder: &Path) -> Self {
+    pub fn read(folder: &Path) -> Self {
         let module = |path: &PathBuf| {
             let path = path.strip_prefix(folder).expect("below the folder").with_extension("");
             let names = path.iter().map(|name| name.to_str().expect("UTF-8").to_owned());
@@ -79,7 +79,12 @@ impl Crate {
 
     /// The file that defines what a path in `module` names, and whether the path is that of a
     /// module itself.
-    fn resolve(&self, module: &Module, path: &[String], depth: usize) -> Option<(Module, bool)> {
+    pub fn resolve(
+        &self,
+        module: &Module,
+        path: &[String],
+        depth: usize,
+    ) -> Option<(Module, bool)> {
         let (mut module, mut path) = self.begin(module, path, depth)?;
         while let Some((first, rest)) = path.clone().split_first() {
             let below = [&module[..], std::slice::from_ref(first)].concat();

@@ -1,5 +1,5 @@
 //! What must hold of the repository as a whole: the arrows between crates and between files,
-//! licences of dependencies, what packages carry, the schema of the files that `impact` reads, and
+//! names of public types, licences of dependencies, what packages carry, the schema of the files that `impact` reads, and
 //! the docs.
 
 mod architecture;
@@ -7,6 +7,7 @@ mod circles;
 mod dependencies;
 mod docs;
 mod impact_files;
+mod names;
 mod packages;
 mod rust;
 

@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use fastrand::Rng;
 use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicStart, run_dynamic_with};
 use stickslip_solver::{
-    Closures, Direction, EmbeddedPair, Guard, Observer, Options, Outcome, Pole, RunError, State,
-    SwitchEvent,
+    Closures, Direction, EmbeddedPair, Guard, Observer, Options, Outcome, RunError, State,
+    SwitchEvent, hybrid::Pole,
 };
 
 use super::dynamic::Plain;

@@ -16,8 +16,8 @@ mod weighted;
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Direction, Grazing, Guard, HybridSystem, Number, Observer, Options, Outcome, Pole,
-    ReadableSystem, Run, RunError, Start, State, StepSize, SwitchEvent,
+    Closures, Direction, Grazing, Guard, HybridSystem, Number, Observer, Options, Outcome,
+    ReadableSystem, Run, RunError, Start, State, StepSize, SwitchEvent, hybrid::Pole,
 };
 
 /// A start in the only mode.

@@ -34,7 +34,7 @@ use crate::window::Point;
 /// runs on both sides have the labels of the branch. The iterator returns each node one step late,
 /// because a special point between the last two steps may replace the last node. A branch may run
 /// past a place at which another boundary begins on it before runs show this; then the last nodes
-/// lie behind the vertex of [`Branch::end`].
+/// lie behind the vertex of [`BoundaryWalk::end`].
 ///
 /// ```
 /// use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, Window};
@@ -68,7 +68,7 @@ use crate::window::Point;
 /// assert!(matches!(branch.end(), Some(End::Closed)));
 /// # Ok::<(), stickslip_tracer::TraceError<std::convert::Infallible>>(())
 /// ```
-pub struct Branch<'a, 'f, F: Family> {
+pub struct BoundaryWalk<'a, 'f, F: Family> {
     track: Track<'a, 'f, F>,
     /// The nodes up to the last foothold that have not been returned yet.
     held: Vec<Node>,
@@ -82,7 +82,7 @@ pub struct Branch<'a, 'f, F: Family> {
     past: bool,
 }
 
-impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
+impl<'a, 'f, F: Family> BoundaryWalk<'a, 'f, F> {
     /// The branch from `seed`; `None` if the seed is not on a boundary between its labels.
     ///
     /// If `forward`, the margin is positive on the left of the branch, else on its right. The
@@ -390,7 +390,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     }
 }
 
-impl<F: Family> Iterator for Branch<'_, '_, F> {
+impl<F: Family> Iterator for BoundaryWalk<'_, '_, F> {
     type Item = Result<Node, TraceError<F::Error>>;
 
     fn next(&mut self) -> Option<Self::Item> {

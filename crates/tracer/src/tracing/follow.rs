@@ -3,7 +3,7 @@
 use crate::curve::{Curve, Node};
 use crate::family::Family;
 use crate::options::TraceOptions;
-use crate::tracing::branch::Branch;
+use crate::tracing::branch::BoundaryWalk;
 use crate::tracing::end::End;
 use crate::tracing::extrema::{Bracket, solve};
 use crate::tracing::runs::{Runs, Traced};
@@ -166,7 +166,7 @@ fn walk<F: Family>(
     seed: &SeedOf<F>,
     forward: bool,
 ) -> Traced<Option<WalkOf<F>>, F> {
-    let Some(mut branch) = Branch::new(runs, seed, forward, &[])? else { return Ok(None) };
+    let Some(mut branch) = BoundaryWalk::new(runs, seed, forward, &[])? else { return Ok(None) };
     let Some(rest) = branch.rest()? else { return Ok(None) };
     let nodes = std::iter::once(branch.origin()).chain(rest).collect();
     let end = branch.end().cloned().unwrap_or(End::Limit);

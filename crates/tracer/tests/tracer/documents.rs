@@ -6,7 +6,7 @@ use stickslip_solver::margin::Margin;
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{
     AtlasOf, Point, Surveyor, Watch, Window,
-    document::{AtlasDocument, DocumentError, SCHEMA},
+    document::{DocumentError, FamilyAtlasDocument, SCHEMA},
     hybrid::{HybridFamily, Itinerary},
 };
 
@@ -14,7 +14,7 @@ use crate::any::any;
 use crate::guards;
 use crate::surveys::{Shapes, WINDOW, assert_same, options};
 
-type OfShapes = AtlasDocument<guards::Label, guards::Margin>;
+type OfShapes = FamilyAtlasDocument<guards::Label, guards::Margin>;
 
 const AXES: [&str; 2] = ["x", "y"];
 
@@ -23,7 +23,7 @@ fn surveyor() -> Surveyor<'static> {
 }
 
 fn document(atlas: &AtlasOf<Shapes>) -> OfShapes {
-    AtlasDocument::new(atlas, &options(), "shapes", AXES)
+    FamilyAtlasDocument::new(atlas, &options(), "shapes", AXES)
 }
 
 /// The document, written and read.
@@ -130,11 +130,11 @@ fn hybrid_systems_have_documents() {
     let surveyor = surveyor();
     let atlas = surveyor.atlas(&family, &window).unwrap();
     let axes = ["height in m", "restitution"];
-    let mut written = AtlasDocument::new(&atlas, &surveyor.options, "ball", axes);
+    let mut written = FamilyAtlasDocument::new(&atlas, &surveyor.options, "ball", axes);
     assert!(!serde_json::to_string(&written).unwrap().contains("guards"));
     written.guards.push("floor".to_owned());
     let text = serde_json::to_string(&written).unwrap();
-    let document: AtlasDocument<Itinerary, Margin> = serde_json::from_str(&text).unwrap();
+    let document: FamilyAtlasDocument<Itinerary, Margin> = serde_json::from_str(&text).unwrap();
     assert_eq!(document, written);
     let read = document.atlas().unwrap();
     assert!(read.agrees());

@@ -3,7 +3,7 @@
 use stickslip_solver::dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem,
 };
-use stickslip_solver::{Grazing, Guard, Method, Options, Pole, RunError, Schedule};
+use stickslip_solver::{Grazing, Guard, Method, Options, RunError, Schedule, hybrid::Pole};
 
 use super::modes::Modes;
 

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use stickslip_solver::{Grazing, Pole};
+use stickslip_solver::{Grazing, hybrid::Pole};
 
 /// The modes that a run has had, in the order of their first use.
 pub struct Modes<Mode>(RefCell<Vec<Mode>>);

@@ -2,8 +2,8 @@
 
 use stickslip_solver::method::Dense;
 use stickslip_solver::{
-    Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, Run, Schedule, Start, State,
-    SwitchEvent,
+    Enclosure, Grazing, Guard, HybridSystem, Observer, Run, Schedule, Start, State, SwitchEvent,
+    hybrid::Pole,
 };
 
 use super::modes::Modes;

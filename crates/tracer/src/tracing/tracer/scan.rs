@@ -4,7 +4,7 @@ use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::Family;
 use crate::lengths::Lengths;
-use crate::tracing::branch::Branch;
+use crate::tracing::branch::BoundaryWalk;
 use crate::tracing::corrector::correct;
 use crate::tracing::end::{End, Special};
 use crate::tracing::network::Unresolved;
@@ -192,7 +192,7 @@ impl<F: Family> Tracer<'_, F> {
         forward: bool,
     ) -> Traced<Option<(Node, Vec<Node>, Option<usize>)>, F> {
         let stops = self.builder.stops.clone();
-        let Some(mut branch) = Branch::new(&self.runs, seed, forward, &stops)? else {
+        let Some(mut branch) = BoundaryWalk::new(&self.runs, seed, forward, &stops)? else {
             let between = [seed.point; 2];
             let labels = seed.labels.clone();
             self.builder.network.unresolved.push(Unresolved::Change { between, labels });
