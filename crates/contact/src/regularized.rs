@@ -10,8 +10,9 @@
 //! ```
 //!
 //! At the start of a stick phase the spring is at its limit and moves as fast as the limit does:
-//! gap = F − s κ y has a double zero there. Until it is [open](crate::phase::PhaseProgress::Settled) the
-//! gap is therefore a component of its own that starts with gap = 0 and rate = gap' = 0:
+//! gap = F − s κ y has a double zero there. Until it is
+//! [open](crate::phase::PhaseProgress::Settled) the gap is therefore a component of its own that
+//! starts with gap = 0 and rate = gap' = 0:
 //!
 //! ```text
 //! gap' = rate     rate' = F'' − 2sκ v w + 4u²κ s κ y

@@ -68,7 +68,8 @@ pub trait Family {
 
     /// Three margins that vanish together where three extrema merge on their zero, the extremum of
     /// `margin` among them: at a swallowtail, which a plane has at single values of a third
-    /// parameter. Only a [`Stack`](crate::stack::Stack) uses them. The default is that none are known.
+    /// parameter. Only a [`Stack`](crate::stack::Stack) uses them. The default is that none are
+    /// known.
     fn swallowtail(&self, _margin: &Self::Margin) -> Option<[Self::Margin; 3]> {
         None
     }

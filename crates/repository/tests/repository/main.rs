@@ -1,6 +1,6 @@
-//! What must hold of the repository as a whole: the arrows between crates and between files,
-//! names of public types, licences of dependencies, what packages carry, the schema of the files that `impact` reads, and
-//! the docs.
+//! What must hold of the repository as a whole: the arrows between crates and between files, names
+//! of public types, licences of dependencies, what packages carry, the schema of the files that
+//! `impact` reads, and the docs.
 
 mod architecture;
 mod circles;
