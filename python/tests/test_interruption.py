@@ -63,17 +63,18 @@ def test_ctrl_c_ends_a_long_call(name: str) -> None:
         press.cancel()
 
 
-@pytest.mark.parametrize("name", ["settle", "diagram", "basins", "regions"])
+@pytest.mark.parametrize("name", ["settle", "diagram", "basins", "regions", "sensitivities"])
 def test_threads_end_behind_ctrl_c(name: str) -> None:
     # A process of its own has no threads of other calls.
     subprocess.run([sys.executable, __file__, name], check=True, timeout=100)
 
 
 def ends_behind_ctrl_c(name: str) -> None:
-    """Presses Ctrl-C in a call, and returns when no thread of it computes any more."""
+    """Presses Ctrl-C in a call. Soon no thread of it computes any more, also on a busy machine."""
     test_ctrl_c_ends_a_long_call(name)
-    used = np.inf
+    latest, used = time.monotonic() + 8, np.inf
     while used > 0.1:
+        assert time.monotonic() < latest, name
         before = time.process_time()
         time.sleep(0.5)
         used = time.process_time() - before

@@ -102,6 +102,23 @@ impl System {
         end: Option<f64>,
         options: &Options,
     ) -> Result<SystemSensitivities, SensitivityError> {
+        self.sensitivities_unless(&|_| false, by, parameters, method, end, options)
+    }
+
+    /// As [`Self::sensitivities`], and stops where `stops`, which is called with the time after
+    /// every step and every event, returns `true`.
+    ///
+    /// # Errors
+    /// [`SensitivityError`].
+    pub fn sensitivities_unless(
+        &self,
+        stops: &dyn Fn(f64) -> bool,
+        by: &[By],
+        parameters: &[f64],
+        method: EmbeddedPair,
+        end: Option<f64>,
+        options: &Options,
+    ) -> Result<SystemSensitivities, SensitivityError> {
         let compiled = self.compile_as_it_is()?;
         if let Some(beyond) = by.iter().find(|by| match by {
             By::Parameter(place) => *place >= self.parameters.len(),
@@ -130,7 +147,7 @@ impl System {
         }
         let extended = Extended::of(branched.as_ref().map_or(self, |it| &it.system), by);
         let runnable = extended.system.compile_as_it_is()?.with(parameters)?;
-        let mut recording = runnable.record_as_it_is(&|_| false, method, end, options)?;
+        let mut recording = runnable.record_as_it_is(stops, method, end, options)?;
         let rules: Vec<usize> = self.modes.iter().map(|mode| mode.rules.len()).collect();
         extended.require_jumps_alone(&recording, &rules)?;
         let mut places = extended.places(&recording, parameters, end_moves, &rules);

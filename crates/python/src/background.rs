@@ -75,7 +75,7 @@ struct State {
     steps: AtomicUsize,
     /// What is done now, in words.
     doing: Mutex<&'static str>,
-    abandoned: AtomicBool,
+    abandoned: Arc<AtomicBool>,
 }
 
 /// With this the threads of abandoned work unwind.
@@ -131,13 +131,24 @@ pub fn watched<T: Send + 'static>(
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(Report<'_>) -> T + Send + 'static,
 ) -> PyResult<T> {
+    abandonable(py, threads, progress, |report, _| work(report))
+}
+
+/// As [`watched`], for work that looks itself at the flag which is set once nobody waits for it.
+pub fn abandonable<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(Report<'_>, &Arc<AtomicBool>) -> T + Send + 'static,
+) -> PyResult<T> {
     let pool = Threads::pool(threads)?;
     let state = Arc::new(State::default());
     let (sender, receiver) = channel::<Result<T, Box<dyn Any + Send>>>();
     let theirs = Arc::clone(&state);
     let thread = move || {
         let report = |progress| theirs.take(progress);
-        let made = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&report))));
+        let made =
+            catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&report, &theirs.abandoned))));
         // Nobody waits any more if the work is abandoned.
         let _ = sender.send(made);
     };

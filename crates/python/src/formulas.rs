@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Compiled, Recording, Runnable, SensitivityError, System};
-use stickslip_plane::progress::Report;
+use stickslip_plane::progress::{Progress, Report};
 use stickslip_solver::dynamic::DynamicSwitch;
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
@@ -162,8 +162,14 @@ impl FormulaSystem {
                 "the system has no end and no rule that ends it; expected t_span",
             ));
         }
-        let work =
-            move |_: Report<'_>| system.sensitivities(&by, &parameters, method, end, &options);
+        let work = move |report: Report<'_>| {
+            // Abandoned work unwinds here.
+            let stops = |_| {
+                report(Progress::Advance { steps: 0 });
+                false
+            };
+            system.sensitivities_unless(&stops, &by, &parameters, method, end, &options)
+        };
         let found = watched(py, 1, None, work)?.map_err(|error| match error {
             SensitivityError::Parameters(error) => bad_input(error),
             error => failed(error),

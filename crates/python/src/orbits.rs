@@ -1,7 +1,6 @@
 //! Periodic orbits of systems of formulas, as the JSON of their documents.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use pyo3::prelude::*;
 use serde_json::json;
@@ -19,7 +18,7 @@ use stickslip_orbits::{
 use stickslip_plane::sealed;
 use stickslip_tracer::Point;
 
-use crate::background::watched;
+use crate::background::abandonable;
 use crate::failure::{bad_input, failed};
 use crate::formulas::FormulaSystem;
 
@@ -256,11 +255,8 @@ impl OrbitSystem {
         py: Python<'_>,
         work: impl FnOnce(&Orbits) -> T + Send + 'static,
     ) -> PyResult<T> {
-        let (orbits, stop) = (Arc::clone(&self.0), Arc::new(AtomicBool::new(false)));
-        let theirs = Arc::clone(&stop);
-        let made = watched(py, 0, None, move |_| work(&orbits.until(theirs)));
-        stop.store(made.is_err(), Ordering::Relaxed);
-        made
+        let orbits = Arc::clone(&self.0);
+        abandonable(py, 0, None, move |_, abandoned| work(&orbits.until(Arc::clone(abandoned))))
     }
 
     /// An orbit from its record, solved for again.

@@ -1,7 +1,7 @@
 //! Derivatives of runs against closed forms and differences.
 
 use stickslip_expression::{By, Moving, SensitivityError, System};
-use stickslip_solver::{EmbeddedPair, Options, RunError};
+use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 
 fn parsed(text: &str) -> System {
     System::parse(text).unwrap_or_else(|error| panic!("{error}"))
@@ -236,4 +236,20 @@ fn jumps_without_derivatives_are_refused() {
         let error = last(text, &[By::Parameter(0)]).expect_err(text);
         assert!(error.to_string().contains(reason), "{text}\n{error}");
     }
+}
+
+#[test]
+fn derivatives_end_where_they_are_stopped() {
+    let system = parsed("parameter k = 2\nstate x = 1\nx' = -k*x\nend = 1000");
+    let by = [By::Parameter(0)];
+    let stops = |s| s > 0.5;
+    let pair = EmbeddedPair::Dop853;
+    let made = system.sensitivities_unless(&stops, &by, &[2.0], pair, None, &options());
+    let found = made.expect("derivatives up to there");
+    assert_eq!(found.recording.run.outcome, Outcome::Stopped);
+    let end = found.places.last().expect("an end");
+    assert!(0.5 < end.s && end.s < 10.0, "{end:?}");
+    assert_eq!(end.s_by, [0.0]);
+    let exact = -end.s * (-2.0 * end.s).exp();
+    assert!((end.state_by[0][0] - exact).abs() < 1e-12, "{end:?}");
 }
