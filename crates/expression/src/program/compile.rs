@@ -191,7 +191,7 @@ impl Compiler<'_> {
         match node(self.graph, index) {
             FormulaNode::Constant(_) | FormulaNode::Variable(_) => {}
             FormulaNode::Unary(function, a) => {
-                self.push(function.into(), index, [value(a), None, None])
+                self.push(function.into(), index, [value(a), None, None]);
             }
             FormulaNode::Power(a, n) => {
                 let n = self.pooled(f64::from(n));
@@ -202,7 +202,7 @@ impl Compiler<'_> {
                 self.push(Op::RealPower, index, [value(a), Pool(n), None]);
             }
             FormulaNode::Select(a, b, c) => {
-                self.push(Op::Select, index, [value(a), value(b), value(c)])
+                self.push(Op::Select, index, [value(a), value(b), value(c)]);
             }
             FormulaNode::Binary(function, a, b) => self.draft_binary(index, function, a, b),
         }

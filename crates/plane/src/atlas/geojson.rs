@@ -90,7 +90,7 @@ fn ring(chart: &Chart, lines: &[Ring], outline: &[OutlinePart]) -> Ring {
             OutlinePart::Curve(curve, CurveSide::Left) => points.extend(&lines[curve]),
             OutlinePart::Curve(curve, CurveSide::Right) => points.extend(lines[curve].iter().rev()),
             OutlinePart::Window(ends) => {
-                points.extend(ends.iter().map(|end| chart.parameters(end)))
+                points.extend(ends.iter().map(|end| chart.parameters(end)));
             }
         }
     }
