@@ -1,7 +1,9 @@
 // Links: the fragment of an address, with what differs from a preset.
 
+import { AXES } from "./models";
 import { PRESETS, presetOf } from "./presets";
-import { DEFAULT, type State } from "./state";
+import { ballOf, DEFAULT, STEEL, type State } from "./state";
+import type { Axis } from "./types";
 
 type Json = unknown;
 
@@ -33,7 +35,8 @@ export function decoded(fragment: string): { state: State; preset: string } {
 
 function read(key: keyof State, text: string): Json {
   const model: Json = DEFAULT[key];
-  if (typeof model === "string" || key === "text") return text;
+  if (key === "text") return text;
+  if (typeof model === "string") return fits(text, model, key) ? text : undefined;
   try {
     const given: Json = JSON.parse(text);
     // A link may leave out what is as usual.
@@ -45,25 +48,30 @@ function read(key: keyof State, text: string): Json {
 }
 
 /** Whether a value has the form of the usual one. */
-function fits(value: Json, model: Json, key: keyof State): boolean {
+function fits(value: Json, model: Json, key: string): boolean {
+  if (key === "tab") return value === "spheres" || value === "system";
+  if (key === "axes") return typeof value === "string" && Object.hasOwn(AXES, value);
   if (key === "set") return isRecord(value) && Object.values(value).every(isNumber);
   if (key === "end") return value === null || isNumber(value);
-  if (key === "pinned")
-    return (
-      value === null || (isRecord(value) && same(value, { ...DEFAULT, point: [1, 1] }, PINNED))
-    );
+  if (key === "pinned") return value === null || same(value, PINNED);
+  if (key === "other") return value === null || same(value, ballOf(STEEL));
+  if (["x", "y", "sx", "sy"].includes(key)) return same(value, model as object) && isAxis(value as Axis);
   if (Array.isArray(model))
     return Array.isArray(value) && value.length === model.length && value.every(isNumber);
-  if (isRecord(model)) return isRecord(value) && same(value, model, Object.keys(model));
+  if (isRecord(model)) return same(value, model);
   return typeof value === typeof model && (typeof value !== "number" || isNumber(value));
 }
 
-const PINNED = ["axes", "point", "law", "damping", "tangential", "mu", "alpha", "bodies"];
+const { axes, point, law, damping, tangential, mu, alpha, bodies } = DEFAULT;
+const PINNED = { axes, point, law, damping, tangential, mu, alpha, bodies };
 
-function same(value: Record<string, Json>, model: object, keys: string[]): boolean {
-  const form = (it: Json) => (Array.isArray(it) ? "array" : typeof it);
-  const own = model as Record<string, Json>;
-  return keys.every((key) => form(value[key]) === form(own[key]));
+/** Whether a value has all fields of a model, each of its form. */
+function same(value: Json, model: object): boolean {
+  return isRecord(value) && Object.entries(model).every(([key, it]) => fits(value[key], it, key));
+}
+
+function isAxis({ low, high, log }: Axis): boolean {
+  return low < high && (low > 0 || !log);
 }
 
 function isRecord(value: Json): value is Record<string, Json> {

@@ -62,6 +62,7 @@ class Page {
   private readonly hand: Hand;
   readonly crew: Crew;
   private hashTimer: ReturnType<typeof setTimeout> | undefined;
+  private toastTimer: ReturnType<typeof setTimeout> | undefined;
   /** All that the controls show, but for the point. */
   private controls = "";
   private legend: [Legend, Atlas | undefined] | undefined;
@@ -343,7 +344,8 @@ class Page {
     const box = byId("toast");
     box.textContent = words;
     box.classList.add("shown");
-    setTimeout(() => box.classList.remove("shown"), 2500);
+    clearTimeout(this.toastTimer);
+    this.toastTimer = setTimeout(() => box.classList.remove("shown"), 2500);
   }
 
   link(): string {

@@ -351,6 +351,30 @@ ofPage(
 );
 
 ofPage(
+  "what a link cannot mean is left out",
+  `tab=none&axes=toString&mu=%22a%22&${new URLSearchParams({
+    x: '{"low":5,"high":2,"log":true}',
+    y: '{"low":-1,"high":2,"log":true}',
+    point: "[1,null]",
+    bodies: '{"other":{}}',
+    pinned: '{"axes":"none","point":[1,1],"law":"paper","damping":0}',
+    damping: "0.125",
+  })}`,
+  async (page) => {
+    await settled(page);
+    const { usual, state } = await page.evaluate(() => {
+      const { store } = globalThis.explorer;
+      const { state } = store;
+      store.change({ damping: 0 });
+      return { usual: store.state, state };
+    });
+    assert.deepEqual(state, { ...usual, damping: 0.125 });
+    assert.deepEqual([state.tab, state.axes, state.pinned], ["spheres", "kappa-psi", null]);
+    assert.deepEqual([state.x.high, state.bodies.other, state.point], [100, null, [63, 0.5]]);
+  },
+);
+
+ofPage(
   "an own system is typed, with a mistake that is mended",
   BALL,
   async (page) => {
