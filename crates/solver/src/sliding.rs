@@ -21,7 +21,7 @@
 //!
 //! ```
 //! use stickslip_solver::{Dop853, Number, Options, Start, State, run};
-//! use stickslip_solver::sliding::{Filippov, Side, Switched};
+//! use stickslip_solver::sliding::{Filippov, SurfaceSide, Switched};
 //!
 //! /// A mass of 1 on a spring of stiffness 1 and on a belt of velocity 0.5, with friction 0.8.
 //! struct Belt;
@@ -41,11 +41,11 @@
 //! let belt = Filippov(Belt);
 //! let state = State::from([-0.3, 0.5]);
 //! let start = Start { mode: belt.mode((), 0.0, &state)?, s: 0.0, state };
-//! assert_eq!(start.mode.sides(), [Side::Sliding]);
+//! assert_eq!(start.mode.sides(), [SurfaceSide::Sliding]);
 //! let mut switches = Vec::new();
 //! let end = run(Dop853, &belt, start, 3.0, &Options::default(), &mut switches)?.finished()?;
 //! // It is carried until the spring pulls as strongly as friction, at 0.8.
-//! assert!((switches[0].s - 2.2).abs() < 1e-12 && switches[0].to.sides() == [Side::Below]);
+//! assert!((switches[0].s - 2.2).abs() < 1e-12 && switches[0].to.sides() == [SurfaceSide::Below]);
 //! // Then it swings about 0.8, with a velocity of 0.5 at first.
 //! assert!((end.state[0] - 0.8 - 0.5 * 0.8_f64.sin()).abs() < 1e-10);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

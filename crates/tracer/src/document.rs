@@ -29,7 +29,8 @@ pub const SCHEMA: &str = "stickslip.family-atlas/1";
 ///
 /// ```
 /// use std::convert::Infallible;
-/// use stickslip_tracer::{Document, Family, FreeRun, Point, Surveyor, Watch, Window};
+/// use stickslip_tracer::document::FamilyAtlasDocument as Document;
+/// use stickslip_tracer::{Family, FreeRun, Point, Surveyor, Watch, Window};
 ///
 /// /// A guard that fires left of a sine.
 /// struct Sine;

@@ -95,12 +95,12 @@ pub fn reference(contact: Contact) -> Result<Collision, CollisionError> {
 ///
 /// ```
 /// use stickslip_model::Contact;
-/// use stickslip_studies::convergence::{Coordinates, Switching, integrate, reference};
+/// use stickslip_studies::convergence::{Formulation, LocationSettings, integrate, reference};
 /// use stickslip_solver::EmbeddedPair;
 ///
 /// let contact = Contact::new(63.0, 0.5, 0.0)?;
-/// let coarse = Switching::AtStepEnds { step_size: 1e-3, max_steps: 10_000 };
-/// let found = integrate(EmbeddedPair::Dop853, contact, Coordinates::PlainTime, &coarse)?;
+/// let coarse = LocationSettings::AtStepEnds { step_size: 1e-3, max_steps: 10_000 };
+/// let found = integrate(EmbeddedPair::Dop853, contact, Formulation::PlainTime, &coarse)?;
 /// let error = found.deviation(&reference(contact)?);
 /// // A switch is late by up to a step, whatever the order of the method.
 /// assert!(error.switch_times.is_some_and(|times| times.iter().any(|time| *time > 3e-4)));
@@ -174,15 +174,15 @@ impl Errors {
 ///
 /// ```
 /// use stickslip_model::Contact;
-/// use stickslip_studies::convergence::{Coordinates, Switching, measure, reference};
+/// use stickslip_studies::convergence::{Formulation, LocationSettings, measure, reference};
 /// use stickslip_solver::{EmbeddedPair, Options, StepSize};
 ///
 /// let contacts = [Contact::new(18.0, 0.4, 0.0)?, Contact::new(63.0, 0.5, 0.0)?];
 /// let references = contacts.map(reference).into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let [coarse, fine] = [0.04, 0.02].map(|h| {
 ///     let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
-///     let located = Switching::Located { options };
-///     measure(EmbeddedPair::Dop853, &references, Coordinates::Regularized, &located)
+///     let located = LocationSettings::Located { options };
+///     measure(EmbeddedPair::Dop853, &references, Formulation::Regularized, &located)
 /// });
 /// assert!(coarse.comparable() && fine.comparable());
 /// let ratio = coarse.velocity.root_mean_square / fine.velocity.root_mean_square;

@@ -38,7 +38,7 @@ use crate::window::Point;
 ///
 /// ```
 /// use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, Window};
-/// use stickslip_tracer::tracing::{Branch, End, Runs, Seed};
+/// use stickslip_tracer::tracing::{BoundaryWalk, End, Runs, Seed};
 ///
 /// /// A guard fires inside the unit circle.
 /// struct Disc;
@@ -61,7 +61,7 @@ use crate::window::Point;
 /// let window = Window { low: Point::new(-2.0, -2.0), high: Point::new(2.0, 2.0) };
 /// let runs = Runs::new(&Disc, window, TraceOptions::default())?;
 /// let seed = Seed::between(&runs, &[Point::zeros(), Point::new(1.5, 0.5)])?.expect("labels differ");
-/// let mut branch = Branch::new(&runs, &seed, true, &[])?.expect("on the boundary");
+/// let mut branch = BoundaryWalk::new(&runs, &seed, true, &[])?.expect("on the boundary");
 /// for node in &mut branch {
 ///     assert!((node?.point.norm() - 1.0).abs() < 1e-12);
 /// }
