@@ -55,7 +55,8 @@ function fits(value: Json, model: Json, key: string): boolean {
   if (key === "end") return value === null || isNumber(value);
   if (key === "pinned") return value === null || same(value, PINNED);
   if (key === "other") return value === null || same(value, ballOf(STEEL));
-  if (["x", "y", "sx", "sy"].includes(key)) return same(value, model as object) && isAxis(value as Axis);
+  if (["x", "y", "sx", "sy"].includes(key))
+    return same(value, model as object) && isAxis(value as Axis);
   if (Array.isArray(model))
     return Array.isArray(value) && value.length === model.length && value.every(isNumber);
   if (isRecord(model)) return same(value, model);
