@@ -20,7 +20,7 @@ const target = process.env.CARGO_TARGET_DIR ?? join(root, "target", "web");
 const TRIPLE = "wasm32-unknown-unknown";
 const MOST_BYTES = 1_500_000;
 
-/** Compiles the module. */
+/** Compiles the module, and the one that unpacks it. */
 function compile() {
   const sysroot = execFileSync("rustc", ["--print", "sysroot"], { encoding: "utf8" }).trim();
   const args = [
@@ -31,6 +31,9 @@ function compile() {
     "web",
     "-p",
     "stickslip-explorer",
+    "--lib",
+    "--example",
+    "unpack",
     "--locked",
   ];
   const env = { ...process.env, CARGO_TARGET_DIR: target };
@@ -68,7 +71,12 @@ function stripped(bytes) {
   return Buffer.concat(parts);
 }
 
-/** The module in parts, each a file of LZMA, which src/unpack.ts reads: two workers unpack them. */
+/** A module as it is built, without what it need not have. */
+function built(...names) {
+  return stripped(readFileSync(join(target, TRIPLE, "web", ...names)));
+}
+
+/** The module in parts, each a file of LZMA: two workers unpack them. */
 function packed(module) {
   const middle = module.length >> 1;
   const parts = [module.subarray(0, middle), module.subarray(middle)];
@@ -104,15 +112,15 @@ async function css() {
 }
 
 async function page() {
-  const module = stripped(readFileSync(join(target, TRIPLE, "web", "stickslip_explorer.wasm")));
   const parts = {
     STYLE: await css(),
-    ...packed(module),
+    UNPACK: built("examples", "unpack.wasm").toString("base64"),
+    ...packed(built("stickslip_explorer.wasm")),
     WORKER: await bundle("worker.ts"),
     MAIN: await bundle("main.ts"),
   };
   const frame = readFileSync(join(here, "src/page.html"), "utf8");
-  const html = frame.replace(/@(STYLE|SIZE|WASM|WORKER|MAIN)@/g, (_, name) => parts[name]);
+  const html = frame.replace(/@(STYLE|UNPACK|SIZE|WASM|WORKER|MAIN)@/g, (_, name) => parts[name]);
   const sizes = Object.entries(parts).map(
     ([name, text]) => `${name.toLowerCase()} ${Math.round(text.length / 1000)} kB`,
   );

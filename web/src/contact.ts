@@ -28,6 +28,7 @@ export class ContactView {
   private readonly spheres: Spheres;
   private cursor: number | undefined;
   private readonly draw = onceAFrame(() => this.drawNow());
+  private drawn = false;
   /** Milliseconds of the worker for the last contact, and of the page for the last frame. */
   get times(): { worker: number; frame: number } {
     return { worker: this.worked, frame: frame.work };
@@ -178,7 +179,10 @@ export class ContactView {
   private drawNow(): void {
     if (sizeOf(this.canvas)[0] === 0) return;
     const [context, width, height] = fit(this.canvas);
-    if (this.chart) drawChart(new CanvasPen(context), this.chart, width, height, this.cursor);
+    if (!this.chart) return;
+    drawChart(new CanvasPen(context), this.chart, width, height, this.cursor);
+    if (!this.drawn) performance.mark("first contact");
+    this.drawn = true;
   }
 }
 

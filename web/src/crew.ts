@@ -2,11 +2,13 @@
 
 import { byId } from "./dom";
 import type { Answer, MapPart, Task } from "./types";
+import type { Packed } from "./unpack";
 
 type Result<T> = { answer: T; ms: number };
 
 type Message =
   | { part: Uint8Array }
+  | { damaged: string }
   | ({ id: number; curve?: Float64Array; dead?: string } & Result<never>);
 
 interface Pending {
@@ -21,14 +23,20 @@ type Show = (curve: Float64Array) => void;
 
 let code: string | undefined;
 
+/** Why there is no module is told once, by who starts the page. */
+const ignored = (): void => {};
+
 /** The module, compiled from the text that the page holds in several parts: workers unpack them at the
  * same time. */
 export async function compiled(hands: Hand[]): Promise<WebAssembly.Module> {
   const holder = byId("wasm");
+  const unpacker = byId("unpack").textContent ?? "";
   const sizes = (holder.dataset.size ?? "").split(",").map(Number);
   const parts = (holder.textContent ?? "").trim().split("\n");
   const found = await Promise.all(
-    parts.map((text, place) => hands[place % hands.length]!.unpack(text, sizes[place] ?? 0)),
+    parts.map((packed, place) =>
+      hands[place % hands.length]!.unpack({ unpacker, packed, size: sizes[place] ?? 0 }),
+    ),
   );
   const module = new Uint8Array(found.reduce((sum, part) => sum + part.length, 0));
   found.reduce((at, part) => (module.set(part, at), at + part.length), 0);
@@ -40,7 +48,8 @@ export class Hand {
   private worker: Worker | undefined;
   private readonly pending = new Map<number, Pending>();
   private next = 0;
-  private readonly unpacked: ((part: Uint8Array) => void)[] = [];
+  /** Takes the part of the module that is being unpacked, or why it cannot be. */
+  private unpacked: ((part: Uint8Array | Error) => void) | undefined;
   /** How often it was started again. */
   restarts = 0;
   /** What is done when no task is left. */
@@ -66,14 +75,18 @@ export class Hand {
   private post(id: number, task: Task): void {
     const worker = this.warm();
     // Behind the module, which the worker gets first.
-    void this.module.then(() => worker.postMessage({ id, task }));
+    this.module.then(() => worker.postMessage({ id, task }), ignored);
   }
 
   /** Unpacks a part of the module, for which nothing else has to be there. */
-  unpack(packed: string, size: number): Promise<Uint8Array> {
-    return new Promise((resolve) => {
-      this.unpacked.push(resolve);
-      this.warm().postMessage({ packed, size });
+  unpack(part: Packed): Promise<Uint8Array> {
+    return new Promise((resolve, reject) => {
+      this.unpacked = (part) => {
+        this.unpacked = undefined;
+        if (part instanceof Error) reject(part);
+        else resolve(part);
+      };
+      this.warm().postMessage(part);
     });
   }
 
@@ -98,7 +111,7 @@ export class Hand {
   private end(): void {
     this.restarts += 1;
     // The module is needed by all.
-    if (this.unpacked.length > 0) return;
+    if (this.unpacked) return;
     this.worker?.terminate();
     this.worker = undefined;
   }
@@ -123,10 +136,8 @@ export class Hand {
     worker.onmessage = ({
       data,
     }: MessageEvent<Message>) => {
-      if ("part" in data) {
-        this.unpacked.shift()?.(data.part);
-        return;
-      }
+      if ("part" in data) return this.unpacked?.(data.part);
+      if ("damaged" in data) return this.unpacked?.(new Error(data.damaged));
       const pending = this.pending.get(data.id);
       if (data.curve) {
         pending?.show?.(data.curve);
@@ -140,9 +151,10 @@ export class Hand {
     };
     worker.onerror = (event) => {
       event.preventDefault();
+      this.unpacked?.(new Error("a worker ended before it was there"));
       this.die("a worker ended; it was started again");
     };
-    void this.module.then((module) => worker.postMessage({ module }));
+    this.module.then((module) => worker.postMessage({ module }), ignored);
     return worker;
   }
 }

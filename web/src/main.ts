@@ -590,7 +590,7 @@ async function start(): Promise<void> {
     document.body.classList.add("ready");
   } catch (error) {
     const reason = error instanceof Error ? error.message : String(error);
-    byId("told").textContent = `This browser cannot run the page: ${reason}`;
+    byId("told").textContent = `The page cannot compute here: ${reason}`;
   }
 }
 

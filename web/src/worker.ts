@@ -2,10 +2,10 @@
 
 import { Engine } from "./engine";
 import type { Answer, MapPart, Task } from "./types";
-import { unpack } from "./unpack";
+import { type Packed, unpack } from "./unpack";
 
 type Message =
-  | { packed: string; size: number }
+  | Packed
   | { module: WebAssembly.Module }
   | { id: number; task: Task };
 
@@ -23,11 +23,12 @@ port.onmessage = async ({
   data,
 }: MessageEvent<Message>) => {
   if ("packed" in data) {
-    const text = atob(data.packed);
-    const packed = new Uint8Array(text.length);
-    for (let index = 0; index < text.length; index++) packed[index] = text.charCodeAt(index);
-    const part = unpack(packed, data.size);
-    port.postMessage({ part }, [part.buffer as ArrayBuffer]);
+    try {
+      const part = await unpack(data);
+      port.postMessage({ part }, [part.buffer as ArrayBuffer]);
+    } catch (error) {
+      port.postMessage({ damaged: reason(error) });
+    }
     return;
   }
   if ("module" in data) {
@@ -45,9 +46,13 @@ port.onmessage = async ({
     port.postMessage({ id: data.id, answer, ms: performance.now() - begun }, transferred(answer));
   } catch (error) {
     // Its memory may be in any state.
-    port.postMessage({ id: data.id, dead: error instanceof Error ? error.message : String(error) });
+    port.postMessage({ id: data.id, dead: reason(error) });
   }
 };
+
+function reason(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
 
 function run(engine: Engine, task: Task): Answer | MapPart {
   switch (task.task) {

@@ -693,3 +693,27 @@ test("a page that was written with a view shows it, and in a frame too", async (
   }
   rmSync(folder, { recursive: true });
 });
+
+test("a damaged page says that it cannot compute, and why", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "explorer-"));
+  const whole = readFileSync(PAGE, "utf8");
+  const at = whole.indexOf('id="wasm"') + 1000;
+  for (const [name, damage, why] of [
+    ["text", "!", /not correctly encoded/],
+    ["head", "", /damaged/],
+    ["module", "AAAA".repeat(100), /damaged/],
+  ]) {
+    const file = join(folder, `${name}.html`);
+    const head = name === "head" ? whole.replace(/(data-size="\d+,\d+">)XQ/, "$1//") : whole;
+    writeFileSync(file, head.slice(0, at) + damage + head.slice(at + damage.length));
+    const { page, said, close } = await browser.openFile(file);
+    const told = () => document.getElementById("told").textContent;
+    await page.waitForFunction(() =>
+      /cannot compute/.test(document.getElementById("told").textContent),
+    );
+    assert.match(await page.evaluate(told), why, name);
+    assert.deepEqual(said, []);
+    await close();
+  }
+  rmSync(folder, { recursive: true });
+});
