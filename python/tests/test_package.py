@@ -90,6 +90,13 @@ def test_the_package_has_the_program(tmp_path: Path) -> None:
         assert failed.returncode in (1, 2) and "missing.json" in failed.stderr
 
 
+@pytest.mark.skipif(os.name != "posix", reason="no other shell closes it")
+def test_a_closed_output_is_an_error() -> None:
+    line = f"{sys.executable} -m stickslip collide --kappa 63 --psi 0.5 >&-"
+    found = subprocess.run(line, shell=True, check=False, stderr=subprocess.PIPE, text=True)
+    assert found.returncode == 1 and "it is closed" in found.stderr
+
+
 @pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
 def test_an_interrupt_ends_the_program(tmp_path: Path) -> None:
     """What is not complete is removed."""

@@ -102,24 +102,37 @@ function reduction({ mu, alpha }: State): string[] {
   return [`--mu ${mu}`, `--alpha ${alpha}`];
 }
 
-function options({ axes, law, tangential }: State, damping: number): string[] {
+function options(state: State, damping: number): string[] {
+  const { axes, law, tangential, dynamic, decay } = state;
   const given = damping > 0 ? [`--damping ${damping}`] : [];
-  if (law === "paper" || axes === "velocities") return given;
-  return [
-    ...given,
-    `--law ${law}`,
-    ...(tangential > 0 ? [`--tangential-damping ${tangential}`] : []),
-  ];
+  if (axes === "velocities") return given;
+  if (law !== "paper") given.push(`--law ${law}`);
+  if (tangential > 0) given.push(`--tangential-damping ${tangential}`);
+  if (decays(state))
+    given.push(`--dynamic-friction ${dynamic}`, `--friction-decay ${decay}`);
+  return given;
 }
 
-function keywords({ axes, law, tangential }: State, damping: number): string[] {
+function keywords(state: State, damping: number): string[] {
+  const { axes, law, tangential, dynamic, decay } = state;
   const given = damping > 0 ? [`damping=${damping}`] : [];
-  if (law === "paper" || axes === "velocities") return given;
-  return [
-    ...given,
-    `law="${law}"`,
-    ...(tangential > 0 ? [`tangential_damping=${tangential}`] : []),
-  ];
+  if (axes === "velocities") return given;
+  if (decays(state))
+    given.push(`law={${terms(law)}, "friction": {"dynamic": ${dynamic}, "decay": ${decay}}}`);
+  else if (law !== "paper") given.push(`law="${law}"`);
+  if (tangential > 0) given.push(`tangential_damping=${tangential}`);
+  return given;
+}
+
+/** What a named law is, as a part of a mapping. */
+function terms(law: string): string {
+  const [name, limited] = law.split("+");
+  return `**stickslip.laws()["${name}"].law${limited ? `, "${limited}": True` : ""}`;
+}
+
+/** Whether friction decays with the velocity: boundaries are not traced then. */
+export function decays({ axes, dynamic, decay }: State): boolean {
+  return axes !== "velocities" && dynamic < 1 && decay > 0;
 }
 
 function ends({ low, high }: Axis, least = LEAST): number[] {

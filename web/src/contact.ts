@@ -7,7 +7,7 @@ import { become, byId, fit, frame, make, onceAFrame, sizeOf } from "./dom";
 import { fixed, short } from "./number";
 import { CanvasPen } from "./pen";
 import { Spheres } from "./spheres";
-import { scene, STEEL, type Pinned, type State } from "./state";
+import { scene, type Pinned, type State } from "./state";
 import type { Answer, Collision, Contact, Law } from "./types";
 
 /** So many intervals a course has at least, on the screen and in a file. */
@@ -190,21 +190,6 @@ export class ContactView {
  * (gₜ/gₙ)·α. */
 function factorOf({ mu, alpha }: State | Pinned): number {
   return (mu || 1) ** 2 / alpha;
-}
-
-/** The part of a state that makes a contact. */
-export function pin(state: State): Pinned {
-  const { axes, point, law, damping, tangential, mu, alpha, bodies } = state;
-  return {
-    axes,
-    point,
-    law,
-    damping,
-    tangential,
-    mu,
-    alpha,
-    bodies: axes === "velocities" ? bodies : STEEL,
-  };
 }
 
 /** The itinerary with one mark for each phase. */

@@ -115,9 +115,14 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
           },
         ]
       : [];
-  const limit = course.normal_force;
+  const usual = { dynamic: 1, decay: 0 };
+  const { dynamic, decay } = contact.document.parameters.law?.friction ?? usual;
+  const friction = course.velocity.map(
+    (velocity) => dynamic + (1 - dynamic) * Math.exp(-decay * Math.abs(velocity)),
+  );
+  const limit = course.normal_force.map((force, index) => force * friction[index]!);
   const negative = limit.map((value) => -value);
-  const most = largest([limit, ...(other ? [other.course.normal_force] : [])]);
+  const most = largest([course.normal_force, ...(other ? [other.course.normal_force] : [])]);
   const forces: Panel = {
     title: "Forces",
     ...symmetric(most),

@@ -2,7 +2,7 @@
 
 import { AXES } from "./models";
 import { PRESETS, presetOf } from "./presets";
-import { ballOf, DEFAULT, STEEL, type State } from "./state";
+import { ballOf, DEFAULT, pin, STEEL, type State } from "./state";
 import type { Axis } from "./types";
 
 type Json = unknown;
@@ -40,7 +40,8 @@ function read(key: keyof State, text: string): Json {
   try {
     const given: Json = JSON.parse(text);
     // A link may leave out what is as usual.
-    const value = key === "bodies" && isRecord(given) ? { ...(model as object), ...given } : given;
+    const usual = { bodies: model as object, pinned: FRICTION }[key as string];
+    const value = usual && isRecord(given) ? { ...usual, ...given } : given;
     return fits(value, model, key) ? value : undefined;
   } catch {
     return undefined;
@@ -63,8 +64,9 @@ function fits(value: Json, model: Json, key: string): boolean {
   return typeof value === typeof model && (typeof value !== "number" || isNumber(value));
 }
 
-const { axes, point, law, damping, tangential, mu, alpha, bodies } = DEFAULT;
-const PINNED = { axes, point, law, damping, tangential, mu, alpha, bodies };
+const PINNED = pin(DEFAULT);
+/** What older links leave out of a pinned contact. */
+const FRICTION = { dynamic: 1, decay: 0 };
 
 /** Whether a value has all fields of a model, each of its form. */
 function same(value: Json, model: object): boolean {

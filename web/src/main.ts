@@ -1,7 +1,7 @@
 // The page: what is where, and what changes what.
 
-import { ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
-import { ContactView, pin } from "./contact";
+import { decays, ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
+import { ContactView } from "./contact";
 import { Crew, Hand, compiled } from "./crew";
 import { byId, make, onceAFrame } from "./dom";
 import { showLegend } from "./legend";
@@ -15,6 +15,7 @@ import { OF_SPHERES, type Legend } from "./quantities";
 import {
   BALL,
   ballOf,
+  pin,
   Store,
   type Axes,
   type Bodies,
@@ -47,6 +48,8 @@ const WINDOWS: Record<Axes, Partial<State>> = {
 };
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
+/** The parameters that have a slider and a number. */
+const SLIDERS = ["damping", "tangential", "dynamic", "decay", "mu"] as const;
 const TABS = ["spheres", "system"] as const;
 
 class Page {
@@ -231,7 +234,7 @@ class Page {
     for (const id of ["boundaries", "points", "limits"] as const)
       byId<HTMLInputElement>(id).checked = state[id];
     put("law", state.law);
-    for (const id of ["damping", "tangential", "mu"] as const) {
+    for (const id of SLIDERS) {
       put(id, state[id]);
       put(`${id}-number`, state[id]);
     }
@@ -287,7 +290,7 @@ class Page {
       ? [["This contact", ofContact(state, contact.document)]]
       : [];
     if (state.axes === "velocities") return [...one, ["These spheres", ofImpact(state)]];
-    return [...one, ["This window", ofWindow(state)]];
+    return decays(state) ? one : [...one, ["This window", ofWindow(state)]];
   }
 
   /** Shows the lines soon: they need not follow each frame of a drag. */
@@ -455,11 +458,12 @@ class Page {
       if (law?.law.damping === "none") patch.damping = 0;
       store.change(patch);
     });
-    for (const id of ["damping", "tangential", "mu"] as const) {
+    for (const id of SLIDERS) {
       on(id, "input", ({ value }) => store.change({ [id]: Number(value) }));
       on(`${id}-number`, "change", (input) => {
         const value = typed(input.value);
-        if (value !== undefined && value >= 0) store.change({ [id]: value });
+        if (value !== undefined && value >= 0 && (id !== "dynamic" || value <= 1))
+          store.change({ [id]: value });
         input.value = String(store.state[id]);
       });
     }

@@ -34,6 +34,9 @@ export interface State {
   law: string;
   damping: number;
   tangential: number;
+  /** The dynamic friction in units of the static one, and how fast it decays with the velocity. */
+  dynamic: number;
+  decay: number;
   mu: number;
   alpha: number;
   bodies: Bodies;
@@ -53,16 +56,11 @@ export interface State {
   end: number | null;
 }
 
-export interface Pinned {
-  axes: Axes;
-  point: [number, number];
-  law: string;
-  damping: number;
-  tangential: number;
-  mu: number;
-  alpha: number;
-  bodies: Bodies;
-}
+/** The part of a state that makes a contact. */
+export type Pinned = Pick<
+  State,
+  "axes" | "point" | "law" | "damping" | "tangential" | "dynamic" | "decay" | "mu" | "alpha" | "bodies"
+>;
 
 /** The steel spheres of the paper's Figure 2, whose Y is in GPa. */
 export const STEEL: Bodies = {
@@ -103,6 +101,8 @@ export const DEFAULT: State = {
   law: "paper",
   damping: 0,
   tangential: 0,
+  dynamic: 1,
+  decay: 0,
   mu: 0.4,
   alpha: 2 / 7,
   bodies: STEEL,
@@ -121,15 +121,22 @@ export const DEFAULT: State = {
   end: null,
 };
 
-type Scenery = Pick<State, "axes" | "law" | "damping" | "tangential" | "mu" | "alpha" | "bodies">;
+/** The contact of a state. */
+export function pin(state: State): Pinned {
+  const { axes, point, law, damping, tangential, dynamic, decay, mu, alpha } = state;
+  const bodies = axes === "velocities" ? state.bodies : STEEL;
+  return { axes, point, law, damping, tangential, dynamic, decay, mu, alpha, bodies };
+}
+
+type Scenery = Omit<Pinned, "point">;
 
 /** The plane of collisions of a state, or of a pinned contact in any window. */
 export function scene(of: Scenery, x: Axis, y: Axis): SceneRequest {
-  const { axes, law, damping, tangential, mu, alpha, bodies } = of;
+  const { axes, law, damping, tangential, dynamic, decay, mu, alpha, bodies } = of;
   const common = { kind: "spheres" as const, x, y, axes, mu, alpha };
   return axes === "velocities"
     ? { ...common, law: "paper", damping: 0, tangential_damping: 0, bodies }
-    : { ...common, law, damping, tangential_damping: tangential };
+    : { ...common, law, damping, tangential_damping: tangential, friction: { dynamic, decay } };
 }
 
 /** Listens to changes, and remembers states to go back to. */

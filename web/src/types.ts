@@ -77,7 +77,7 @@ export interface Collision {
     psi: number;
     damping: number;
     tangential_damping?: number;
-    law?: unknown;
+    law?: { friction?: { dynamic: number; decay: number } };
   };
   method: { name: string };
   eps_n: number;

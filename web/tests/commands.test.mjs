@@ -75,6 +75,22 @@ for (const [name, change] of [
     },
   ],
   [
+    "decaying friction",
+    { law: "paper", dynamic: 0.4, decay: 5, point: [30, 0.55], boundaries: false },
+  ],
+  [
+    "decaying friction in another law",
+    {
+      law: "gran/hertz/history+limit_damping",
+      damping: 0.2,
+      tangential: 0.5,
+      dynamic: 0.25,
+      decay: 2,
+      point: [6, 0.35],
+      boundaries: false,
+    },
+  ],
+  [
     "impact ratios from 0",
     {
       axes: "axis-ratio",

@@ -29,6 +29,8 @@ use commands::Arguments;
 pub use error::Failure;
 use output::console::say;
 pub use stickslip_files::FileError;
+use stickslip_files::output::file::standard_output;
+pub use stickslip_files::output::file::note_closed_output;
 use version::NAME;
 
 /// Carries out the command line of this process and reports what went wrong.
@@ -61,9 +63,12 @@ pub fn program(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>)
 
 /// Shows a help text, the version, or what is wrong with the arguments.
 fn answer(reply: &clap::Error) -> u8 {
-    match reply.print() {
+    if reply.use_stderr() {
         // If standard error is closed, nobody wants to know.
-        _ if reply.use_stderr() => u8::try_from(reply.exit_code()).unwrap_or(2),
+        let _ = reply.print();
+        return u8::try_from(reply.exit_code()).unwrap_or(2);
+    }
+    match standard_output().and_then(|_| reply.print()) {
         // Nobody may read the help text any more. That is not a failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             let failure = Failure::Stdout(error);

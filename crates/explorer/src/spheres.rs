@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use stickslip_model::history::{History, Moment};
 use stickslip_model::spheres::{Body, BodyPair, Material, Sphere, Surface};
 use stickslip_model::{
-    Collider, Collision, Contact, Engine, InvalidValue, Reduction, Regime, Side, document, exact,
-    linear, presets,
+    Collider, Collision, Contact, Engine, Friction, InvalidValue, Law, Reduction, Regime, Side,
+    document, exact, linear, presets,
 };
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Statistics;
@@ -24,6 +24,9 @@ pub struct SpheresRequest {
     law: String,
     damping: f64,
     tangential_damping: f64,
+    /// How friction decays with the velocity.
+    #[serde(default)]
+    friction: Friction,
     mu: f64,
     alpha: f64,
     /// The spheres whose velocities are the axes.
@@ -131,8 +134,9 @@ impl Spheres {
                 return Ok(Self { parameters: Parameters::Velocities(pair), tangential });
             }
         };
+        let law = Law { friction: request.friction, ..preset.law };
         let contact = Contact::new(1.0, 1.0, damping)
-            .and_then(|contact| contact.with_law(preset.law, tangential_damping));
+            .and_then(|contact| contact.with_law(law, tangential_damping));
         let any = contact.map_err(refused)?;
         Ok(Self { parameters: Parameters::Scaled { units, any }, tangential: mu * mu / alpha })
     }

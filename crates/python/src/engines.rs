@@ -92,7 +92,10 @@ pub fn document(
 
 /// Carries out a command line of the program, which begins with its name: the exit code.
 #[pyfunction]
-pub fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+pub fn program(py: Python<'_>, arguments: Vec<OsString>, output_is_closed: bool) -> u8 {
+    if output_is_closed {
+        stickslip_cli::note_closed_output();
+    }
     py.detach(|| stickslip_cli::program(arguments))
 }
 

@@ -3,14 +3,14 @@
 use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
 
-use stickslip_files::output::file::{StoredFile, publish};
+use stickslip_files::output::file::{StoredFile, publish, standard_output};
 
 use crate::error::Failure;
 
 /// Writes results to standard output. If its reader has gone away, that is not a failure: the
 /// reader has seen enough.
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    let mut out = BufWriter::new(io::stdout().lock());
+    let mut out = BufWriter::new(standard_output().map_err(Failure::Stdout)?.lock());
     match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Stdout(error)),
         _ => Ok(()),

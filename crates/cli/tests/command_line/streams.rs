@@ -96,17 +96,39 @@ fn a_reader_that_goes_away_has_seen_enough() {
     }
 }
 
+/// Command lines that write to standard output.
+const WRITING: [&str; 5] = [
+    "--help",
+    "--version",
+    "collide --help",
+    "collide --kappa 18 --psi 1",
+    "collide --batch in.csv --out /dev/stdout",
+];
+
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+#[test]
+fn a_closed_standard_output_is_a_failure_where_it_is_written() {
+    let workspace = Workspace::with_input(ROWS);
+    let run = |line: &str| {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", r#"exec "$0" "$@" >&-"#, cargo_bin!("stickslip").to_str().unwrap()]);
+        shell.args(line.split_whitespace()).current_dir(workspace.path(""));
+        Ran::from(shell.output().unwrap())
+    };
+    for line in WRITING {
+        let ran = run(line);
+        assert_eq!(ran.code, 1, "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains("cannot be written: it is closed"), "{line}: {}", ran.stderr);
+    }
+    assert_eq!(run("collide --batch in.csv --out out.csv").code, 0);
+    assert_eq!(run("collide --kappa -1 --psi 1").code, 2);
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_standard_output_is_a_failure() {
     let workspace = Workspace::with_input(ROWS);
-    for line in [
-        "--help",
-        "--version",
-        "collide --help",
-        "collide --kappa 18 --psi 1",
-        "collide --batch in.csv --out /dev/stdout",
-    ] {
+    for line in WRITING {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
         let Output { status, stderr, .. } =
             stickslip(&workspace, line).stdout(full).output().unwrap();

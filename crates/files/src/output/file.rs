@@ -3,6 +3,7 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use tempfile::NamedTempFile;
 
@@ -200,6 +201,25 @@ impl Write for OutputFile {
     }
 }
 
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Notes that the process was started with a closed standard output. Rust has opened `/dev/null` in
+/// its place, or its number belongs to another file.
+pub fn note_closed_output() {
+    CLOSED.store(true, Ordering::Relaxed);
+}
+
+/// Standard output.
+///
+/// # Errors
+/// It is closed.
+pub fn standard_output() -> io::Result<io::Stdout> {
+    if CLOSED.load(Ordering::Relaxed) {
+        return Err(io::Error::other("it is closed"));
+    }
+    Ok(io::stdout())
+}
+
 /// The stream to which `path` leads. A stream of the process is written where it stands.
 fn stream(path: &Path) -> io::Result<File> {
     #[cfg(unix)]
@@ -207,7 +227,7 @@ fn stream(path: &Path) -> io::Result<File> {
         use std::os::fd::AsFd;
         let own = |number: &str| OWN.iter().any(|own| path == Path::new(own).join(number));
         if path == Path::new(STANDARD_OUTPUT) || own("1") {
-            return Ok(io::stdout().as_fd().try_clone_to_owned()?.into());
+            return Ok(standard_output()?.as_fd().try_clone_to_owned()?.into());
         }
         if path == Path::new("/dev/stderr") || own("2") {
             return Ok(io::stderr().as_fd().try_clone_to_owned()?.into());

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use cargo_metadata::MetadataCommand;
 
 use crate::root;
+use crate::rust::{code, is_word};
 
 /// The layers of docs/architecture.md from below. A crate may use the crates of all lower layers.
 const LAYERS: [&[&str]; 12] = [
@@ -87,4 +88,29 @@ fn nothing_is_asserted_in_debug_builds_alone() {
         let text = fs::read_to_string(&path).expect("a source");
         assert!(!text.contains("debug_assert"), "{}", path.display());
     }
+}
+
+/// The lint of the workspace is let through there: exports of a page, arrays and addresses that
+/// Python hands over, and what the loader calls before the program.
+#[test]
+fn unsafe_code_stands_in_few_files() {
+    let crates = root().join("crates");
+    let mut found: Vec<String> = sources(crates.clone())
+        .into_iter()
+        .filter(|path| {
+            let text = code(&fs::read_to_string(path).expect("a source"));
+            text.split(|c| !is_word(c)).any(|word| word == "unsafe")
+        })
+        .map(|path| path.strip_prefix(&crates).expect("below").display().to_string())
+        .collect();
+    found.sort();
+    let expected = [
+        "cli/src/main.rs",
+        "explorer/examples/unpack.rs",
+        "explorer/src/lib.rs",
+        "explorer/src/page.rs",
+        "python/src/hybrid/function.rs",
+        "python/src/hybrid/numbers.rs",
+    ];
+    assert_eq!(found, expected);
 }
