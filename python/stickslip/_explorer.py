@@ -124,9 +124,13 @@ def _scene(given: Mapping[str, Any]) -> dict[str, Any]:
     scene = {"damping": given["damping"]}
     if "law" not in given:
         return scene
+    law = dict(given["law"])
+    scene |= {"tangential": given["tangential_damping"], **law.pop("friction", {})}
     for name, known in laws().items():
-        if known.law == given["law"]:
-            return {**scene, "law": name, "tangential": given["tangential_damping"]}
+        if law == dict(known.law):
+            return {**scene, "law": name}
+        if law == {**known.law, "limit_damping": True}:
+            return {**scene, "law": f"{name}+limit_damping"}
     raise ValueError(f"the law {given['law']} has no name; expected one of stickslip.laws()")
 
 

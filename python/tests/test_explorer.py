@@ -39,6 +39,16 @@ def test_a_collision_is_shown_at_its_place():
     }
 
 
+@pytest.mark.parametrize("name", ["paper", "gran/hertz/history+limit_damping"])
+def test_friction_of_a_collision_is_shown(name):
+    base = stickslip.laws()[name.partition("+")[0]].law
+    law = {**base, "friction": {"dynamic": 0.4, "decay": 5.0}}
+    if "+" in name:
+        law["limit_damping"] = True
+    view = parse_qs(stickslip.explore(stickslip.collide(3, 0.4, damping=0.1, law=law)).view)
+    assert view["law"] == [name] and view["dynamic"] == ["0.4"] and view["decay"] == ["5.0"]
+
+
 def test_an_atlas_is_shown_with_its_window():
     atlas = stickslip.trace((4, 5), (0.8, 0.9), damping=0.1)
     view = parse_qs(stickslip.explore(atlas).view)
