@@ -300,7 +300,8 @@ class FormulaSystem:
         intervals x and y, in both directions. `meetings` are orbits at which something else changes
         too, with their names: resonance-1-1, resonance-1-2, double-graze, cusp, fold-grazing.
 
-        Raises ValueError if a name or a value is wrong, or for the kinds branch-point and boundary,
+        Raises ValueError if a name or a value is wrong, or for the kinds branch-point, infinite-period and
+        boundary,
         and ComputationError if the curve does not begin.
         """
         return _orbits.curve(self, special, parameters, x, y, longest_step)

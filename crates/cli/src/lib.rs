@@ -29,8 +29,8 @@ use commands::Arguments;
 pub use error::Failure;
 use output::console::say;
 pub use stickslip_files::FileError;
-use stickslip_files::output::file::standard_output;
 pub use stickslip_files::output::file::note_closed_output;
+use stickslip_files::output::file::standard_output;
 use version::NAME;
 
 /// Carries out the command line of this process and reports what went wrong.

@@ -4,13 +4,14 @@
 //! both. Behind a graze it may be an orbit of its equations that the system does not follow: it is
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
-//! `meet` where branches meet, and `change` where the verdict changes, by conditions that `watches`
-//! has. `curve` follows special orbits over two parameters, `switched` goes over to another branch,
+//! `meet` where branches meet, `change` where the verdict changes, by conditions that `watches`
+//! has, and `endless` where the period grows without bound. `curve` follows special orbits over two parameters, `switched` goes over to another branch,
 //! and `resumed` goes on with a branch that was written.
 
 mod borders;
 mod change;
 pub(crate) mod curve;
+mod endless;
 mod locate;
 mod meet;
 pub(crate) mod point;
@@ -25,6 +26,7 @@ use crate::equations::Equations;
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::orbit::Orbit;
+use endless::{Rest, Steps};
 use point::{Along, Point};
 
 /// How a branch is followed. Lengths are in unknowns of size 1: states over their largest value,
@@ -133,6 +135,8 @@ pub enum SpecialKind {
     Choice,
     /// The duration of a segment is zero.
     VanishingSegment,
+    /// The period grows without bound, and the branch ends.
+    InfinitePeriod,
     /// The system begins or ends to follow the orbit, for a reason that is not named.
     Boundary,
 }
@@ -154,6 +158,7 @@ impl SpecialKind {
             Self::CornerCollision => "corner-collision",
             Self::Choice => "choice",
             Self::VanishingSegment => "vanishing-segment",
+            Self::InfinitePeriod => "infinite-period",
             Self::Boundary => "boundary",
         }
     }
@@ -294,6 +299,7 @@ impl Orbits {
         let (closes, soonest) = other.map_or((start, 5), |other| (other, 0));
         let mut last = start.clone();
         let mut step = options.first_step;
+        let mut steps = Steps::new(&start.orbit, along.parameter, along.range);
         while !along.is_at_end(&last) {
             if half.points.len() + 1 >= options.most_points {
                 half.object(format!("the branch goes on behind {} points", options.most_points));
@@ -332,6 +338,20 @@ impl Orbits {
                 break;
             }
             half.points.push(next.orbit.clone());
+            match steps.rest(&next.orbit) {
+                Some(Rest::Endless(segment)) => {
+                    let (behind, kind) = (half.points.len() + 1, SpecialKind::InfinitePeriod);
+                    let special = along.special(kind, Some(segment), None, next);
+                    half.specials.push(SpecialOrbit { behind, ..special });
+                    break;
+                }
+                Some(Rest::Upright) => {
+                    let at = self.at(along, &next);
+                    half.object(format!("the branch goes on at {at} alone"));
+                    break;
+                }
+                None => {}
+            }
             if turn > 0.995 {
                 step = (1.5 * step).min(options.longest_step);
             } else if turn < 0.98 {

@@ -231,7 +231,7 @@ const ABOUT: &str = "\
 Follow a periodic orbit of a system of your own over a parameter, through folds and grazes. \
 Orbits that the system does not follow are kept and marked. Special orbits are located and named: \
 fold, flip, neimark-sacker, branch-point, grazing, grazing-sliding, adding-sliding, sliding-edge, \
-corner-collision, choice, vanishing-segment, boundary.
+corner-collision, choice, vanishing-segment, infinite-period, boundary.
 
 If the branch breaks off within the interval, it is written and says why, and the exit code is 1.";
 

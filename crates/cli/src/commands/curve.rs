@@ -157,7 +157,7 @@ Follow the special orbits of one kind over two parameters, from a branch: where 
 flips, grazes or begins to slide. Orbits at which something else changes too are located and named: \
 fold-grazing, double-graze, cusp, resonance-1-1, resonance-1-2.
 
-Kinds branch-point and boundary have no curve.";
+Kinds branch-point, infinite-period and boundary have no curve.";
 
 /// What `curve --help` says last.
 const EXAMPLES: &str = "\

@@ -108,7 +108,7 @@ impl Orbits {
     ///
     /// # Errors
     /// [`OrbitError`] if the curve does not begin: for instance for a kind that no function says,
-    /// `branch-point` and `boundary`.
+    /// `branch-point`, `infinite-period` and `boundary`.
     pub fn curve(
         &self,
         special: &SpecialOrbit,

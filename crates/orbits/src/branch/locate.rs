@@ -39,6 +39,10 @@ impl Along<'_> {
                 (zero, _) => zero?,
             };
             let Some((at, point)) = zero else { continue };
+            // There are no multipliers at a graze. What is zero there is a rate.
+            if matches!(test, Test::Flip(_)) && point.orbit.multipliers.is_none() {
+                continue;
+            }
             let meets = found.iter().any(|(other, _)| (at - other).abs() <= BESIDE * length);
             if matches!(test, Test::Fold) && meets {
                 continue;

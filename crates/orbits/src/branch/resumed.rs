@@ -5,7 +5,7 @@ use stickslip_expression::InvalidValue;
 use stickslip_solver::GivenValue;
 
 use super::point::{Along, Point};
-use super::{Branch, BranchOptions, Half, NOT_LOCATED, SpecialOrbit};
+use super::{Branch, BranchOptions, Half, NOT_LOCATED, SpecialKind, SpecialOrbit};
 use crate::error::OrbitError;
 use crate::find::Orbits;
 use crate::itinerary::require_of;
@@ -67,8 +67,16 @@ impl Orbits {
         let along = Along::new(self, &equations, parameter, [low, high]);
         let start = along.end([&points[1], first])?;
         let end = along.end([&points[points.len() - 2], last])?;
-        let ahead = self.half(&along, &end, Some(&start.turned()), options);
-        let back = (!ahead.closed).then(|| self.half(&along, &start, None, options));
+        let ends = |behind: usize| {
+            let is_end = |it: &SpecialOrbit| it.kind == SpecialKind::InfinitePeriod;
+            branch.specials.iter().any(|it| is_end(it) && it.behind == behind)
+        };
+        let ahead = if ends(points.len()) {
+            Half::default()
+        } else {
+            self.half(&along, &end, Some(&start.turned()), options)
+        };
+        let back = (!ahead.closed && !ends(0)).then(|| self.half(&along, &start, None, options));
         let lost = branch.objection.iter().flat_map(|it| it.split("; "));
         let lost: Vec<_> = lost.filter(|it| it.contains(NOT_LOCATED)).collect();
         let middle = Half {

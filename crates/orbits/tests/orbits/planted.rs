@@ -250,3 +250,47 @@ fn a_fold_over_the_period_of_a_clock() {
         branch.points.iter().all(|it| { (it.period - 2.0 * PI / it.parameters[1]).abs() < 1e-12 })
     );
 }
+
+/// A rimless wheel rolls down a slope. Where it is too slow to pass above a spoke, its step takes
+/// for ever.
+#[test]
+fn a_period_grows_without_bound() {
+    let wheel = "parameter s = 0.08, a = 0.3\nstate q = s - a, w = 0.45\nq' = w\nw' = sin(q)\n\
+                 when q > s + a \"step\"\n  q := s - a\n  w := cos(2*a)*w\nend = 100";
+    let system = System::parse(wheel).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let guess = Guess { itinerary: &["step"], ..Guess::default() };
+    let orbit = orbits.find(&system.values(), &guess).expect("an orbit");
+    let options = BranchOptions::default();
+    let branch = orbits.branch(&orbit, 0, [0.0, 0.3], &options).expect("a branch");
+    // The energy behind a step, less what it takes to stand above the spoke.
+    let left = |s: f64| {
+        let (gain, kept) = (4.0 * s.sin() * 0.3_f64.sin(), 0.6_f64.cos().powi(2));
+        kept * gain / (1.0 - kept) - 2.0 * (1.0 - (s - 0.3).cos())
+    };
+    let (mut low, mut high) = (0.01, 0.08);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if left(middle) < 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let [end] = &branch.specials[..] else {
+        panic!("{:?} {:?}", branch.specials, branch.objection)
+    };
+    assert_eq!((end.kind, end.segment, end.behind), (SpecialKind::InfinitePeriod, Some(0), 0));
+    assert!((end.value - low).abs() < 1e-10, "{} {low}", end.value);
+    assert_eq!(branch.objection, None);
+    assert!(branch.points.iter().all(Orbit::is_admissible));
+    let resumed = orbits.resumed(&branch, [0.0, 0.3], &options).expect("a branch");
+    assert_eq!(resumed, branch);
+}
+
+/// An oscillator sticks to a belt until that is too fast. The return is singular where the arrival
+/// grazes, and no multiplier is -1.
+#[test]
+fn a_graze_is_no_flip() {
+    let belt = "parameter belt = 3\nstate x = 0.3, v = belt\nx' = v\nmode move\n  sliding on v = \
+                belt\n  v' = -x - 0.05*v - sign(v - belt)*(1 + 0.6*exp(-3*abs(v - belt)))\nend = 9";
+    let branch = settled(belt, [2.9, 3.1]);
+    let found: Vec<_> = branch.specials.iter().map(|it| it.kind).collect();
+    assert_eq!(found, [SpecialKind::Fold, SpecialKind::GrazingSliding]);
+}

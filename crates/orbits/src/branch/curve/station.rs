@@ -21,8 +21,8 @@ impl Follower<'_> {
         let slopes = &point.evaluation.slopes;
         let SpecialOrbit { kind, segment, rule, .. } = *self.special;
         let unknown = || {
-            let expected = "a kind of special orbit that has a function: not `branch-point` and \
-                            not `boundary`";
+            let expected = "a kind of special orbit that has a function: not `branch-point`, \
+                            `boundary` or `infinite-period`";
             InvalidValue::new("the special orbit", kind.name(), expected)
         };
         Ok(match (kind, segment, rule) {
