@@ -17,6 +17,8 @@ use crate::orbit::Orbit;
 
 /// So many events of a run are looked at for one that repeats.
 const MOST_EVENTS: usize = 400;
+/// An orbit goes around again from states that differ by less, of their size.
+const AGAIN: f64 = 1e-8;
 /// How much repeated states may differ, of their size.
 const REPEATS: f64 = 1e-4;
 
@@ -82,7 +84,7 @@ impl Orbits {
         let found = found.map_err(|error| OrbitError::Run { segment: 0, error })?;
         self.require_wanted()?;
         let draft = self.repeated(parameters, &found);
-        let orbit = self.solve(&draft.ok_or(OrbitError::NotSettled {
+        let orbit = self.once_around(&draft.ok_or(OrbitError::NotSettled {
             events: found.last.len(),
             tolerance: REPEATS,
             outcome: found.run.outcome,
@@ -139,6 +141,33 @@ impl Orbits {
         }
         last.drain(..last.len().saturating_sub(MOST_EVENTS));
         Ok(Settling { run, last, sizes })
+    }
+
+    /// The orbit of a round. Where a run comes to it from one side and the other in turn, its round
+    /// may go around twice, or more often.
+    pub(crate) fn once_around(&self, round: &Draft) -> Result<Orbit, OrbitError> {
+        let orbit = self.solve(round)?;
+        let Draft { parameters, start, legs, states, durations } = orbit.draft();
+        let mut sizes = states[0].clone();
+        states.iter().for_each(|state| enlarge(&mut sizes, state));
+        let same = |one: usize, other: usize| {
+            let mut parts = states[one].iter().zip(&states[other]).zip(&sizes).enumerate();
+            let near = |x: f64, size: f64| x.abs() <= AGAIN * size;
+            legs[one] == legs[other]
+                && near(durations[one] - durations[other], orbit.period)
+                && parts.all(|(place, ((x, y), size))| {
+                    near(x - y, *size) || is_apart(&self.system, &legs, place)
+                })
+        };
+        let m = legs.len();
+        let again = |n: &usize| m % n == 0 && (*n..m).all(|k| same(k, k - n));
+        let once = (1..m).find(again).and_then(|n| {
+            let (legs, states) = (legs[..n].to_vec(), states[..n].to_vec());
+            let durations = durations[..n].to_vec();
+            self.solve(&Draft { parameters: parameters.clone(), start, legs, states, durations })
+                .ok()
+        });
+        Ok(once.unwrap_or(orbit))
     }
 
     /// The last round of events that repeats at the end of a run. Events that accumulate, or end

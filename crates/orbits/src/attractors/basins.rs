@@ -122,7 +122,7 @@ impl Orbits {
                     if without.iter().any(|it| self.is_same(it, draft, &sizes)) {
                         return None;
                     }
-                    let orbit = self.solve(draft).ok();
+                    let orbit = self.once_around(draft).ok();
                     let Some(orbit) = orbit.filter(|it| self.is_same(&it.draft(), draft, &sizes))
                     else {
                         without.push(draft.clone());
@@ -184,17 +184,18 @@ impl Orbits {
         }
     }
 
-    /// Whether two rounds are one, perhaps from another segment on.
+    /// Whether a round is another one, perhaps from another segment on, or goes around it several
+    /// times.
     fn is_same(&self, one: &Draft, other: &Draft, sizes: &[f64]) -> bool {
-        let m = one.legs.len();
-        let (period, length) = (one.period(), other.period());
-        if m != other.legs.len() || (period - length).abs() > SAME * period {
+        let (n, m) = (one.legs.len(), other.legs.len());
+        let (period, length) = ((m / n) as f64 * one.period(), other.period());
+        if m % n != 0 || (period - length).abs() > SAME * period {
             return false;
         }
         let apart = |k: usize| is_apart(&self.system, &one.legs, k);
-        (0..m).any(|shift| {
-            (0..m).all(|i| {
-                let k = (i + shift) % m;
+        (0..n).any(|shift| {
+            (0..m).all(|k| {
+                let i = (k + shift) % n;
                 one.legs[i] == other.legs[k]
                     && are_near(&one.states[i], &other.states[k], sizes, apart)
             })

@@ -1,7 +1,7 @@
 //! Exponents, sections, diagrams and basins against closed forms.
 
 use stickslip_expression::System;
-use stickslip_orbits::{Attractor, Guess, Orbits, Section};
+use stickslip_orbits::{Attractor, Guess, Orbit, Orbits, Section};
 
 use crate::impact;
 
@@ -171,4 +171,27 @@ fn what_has_no_section_is_refused() {
     assert!((orbit.segments[0].state[0] - exact).abs() < 1e-11, "{orbit:?}");
     let [[size, _]] = orbit.multipliers.as_deref().expect("no graze") else { panic!("one") };
     assert!((size - (-1.0_f64).exp()).abs() < 1e-11);
+}
+
+/// A run that comes to an orbit from both sides in turn repeats after two rounds before it does
+/// after one. The orbit goes around once.
+#[test]
+fn an_orbit_goes_around_once() {
+    let text = "state x = 1.02\nx' = -0.01*(x - 1)\nevery 1 \"tick\"\n  x := 1 - 0.98*(x - 1)";
+    let orbits = orbits(text);
+    let multiplier = -0.98 * (-0.01_f64).exp();
+    let is_once = |orbit: &Orbit| {
+        let once = (orbit.period - 1.0).abs() < 1e-12 && orbit.segments.len() == 1;
+        once && (orbit.multipliers.as_ref().expect("some")[0][0] - multiplier).abs() < 1e-12
+    };
+    // The distance is 1.0e-3 then, and falls by 0.06 of it in two rounds.
+    let orbit = orbits.settled(&[], &Guess::default(), 100.5).expect("an orbit");
+    assert!(is_once(&orbit), "{orbit:?}");
+    let text = format!("{}\ny' = -y", text.replace("state x = 1.02", "state x = 1.02, y = 0"));
+    let orbits = self::orbits(&text);
+    let starts = [1.0, 1.02];
+    let found = orbits.basins(&[], &Guess::default(), [0, 1], [&starts, &[0.0]], 120.5);
+    let found = found.expect("basins");
+    let [Attractor::Orbit(orbit)] = &found.attractors[..] else { panic!("{found:?}") };
+    assert_eq!((orbit.segments.len(), &found.labels[..]), (1, &[Some(0), Some(0)][..]));
 }

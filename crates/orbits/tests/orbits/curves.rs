@@ -320,3 +320,25 @@ fn folds_meet_at_a_cusp() {
     let ends = [&found.points[0], &found.points[found.points.len() - 1]];
     assert!(ends.iter().all(|it| it.parameters[1] > 1.39 || it.parameters[0].abs() > 0.89));
 }
+
+/// A driven mass between two walls: its symmetric orbits graze both at once, all along the curve.
+#[test]
+fn two_walls_are_grazed_together() {
+    let walls = "parameter a = 0.6, w = 1.3\nstate x = 0, v = 1, ph = 0\nx' = v\n\
+                 v' = -0.5*x - 0.05*v + a*cos(ph)\nph' = w\n\
+                 when x > 1 \"right\"\n  x := 1\n  v := -0.7*v\n\
+                 when x < -1 \"left\"\n  x := -1\n  v := -0.7*v\n\
+                 when ph > 2*pi \"phase\"\n  ph := ph - 2*pi\nend = 9";
+    let system = System::parse(walls).expect("a system");
+    let orbits = Orbits::new(&system).expect("orbits");
+    let orbit = orbits.settled(&system.values(), &Guess::default(), 400.0).expect("an orbit");
+    let options = BranchOptions::default();
+    let branch = orbits.branch(&orbit, 0, [0.1, 2.0], &options).expect("a branch");
+    let graze = branch.specials.iter().find(|it| it.kind == SpecialKind::Grazing).expect("one");
+    let window = [[1.0, 1.4], [0.05, 1.5]];
+    let curve = orbits.curve(graze, [1, 0], window, &options).expect("a curve");
+    // Without impacts |k − w² + icw| is the amplitude of the force at which that of x is 1.
+    let (w, a) = (curve.points[3].parameters[1], curve.points[3].parameters[0]);
+    assert!((a - (0.5 - w * w).hypot(0.05 * w)).abs() < 1e-9, "{a} {w}");
+    assert!(curve.meetings.is_empty(), "{:?}", curve.meetings);
+}

@@ -154,6 +154,13 @@ impl Follower<'_> {
             Sought::Margin(_, margin) => {
                 Some(ZERO * self.along.margin_size(margin, &station.point)?)
             }
+            // Both walls are grazed at once by orbits that are symmetric.
+            Sought::Test(_, _, Test::Rate(segment)) => {
+                let rule = self.along.equations.legs()[*segment].rule;
+                let margin = Margin::Inner { segment: *segment, rule };
+                let size = self.along.margin_size(&margin, &station.point)?;
+                Some(ZERO * size / station.point.orbit.period.abs())
+            }
             _ => Some(0.0),
         }
     }
