@@ -155,7 +155,9 @@ fn legend(svg: &mut Svg, (left, y): (f64, f64), series: &Series) {
         svg.line((left, y), (left + 30.0, y), stroke);
     }
     if let Some(mark) = series.mark {
-        mark.draw(svg, (left + 15.0, y));
+        // One dot alone would hardly have a colour.
+        let shape = if mark.shape == Shape::Dot { Shape::Disc } else { mark.shape };
+        Mark { shape, ..mark }.draw(svg, (left + 15.0, y));
     }
     svg.words((left + 38.0, y), Words::new(&series.name, SMALL, Anchor::Start));
 }
