@@ -148,8 +148,9 @@ impl Orbits {
     pub(crate) fn once_around(&self, round: &Draft) -> Result<Orbit, OrbitError> {
         let orbit = self.solve(round)?;
         let Draft { parameters, start, legs, states, durations } = orbit.draft();
-        let mut sizes = states[0].clone();
-        states.iter().for_each(|state| enlarge(&mut sizes, state));
+        let mut sizes = vec![0.0; states[0].len()];
+        let ends = orbit.segments.iter().map(|it| &it.end);
+        states.iter().chain(ends).for_each(|state| enlarge(&mut sizes, state));
         let same = |one: usize, other: usize| {
             let mut parts = states[one].iter().zip(&states[other]).zip(&sizes).enumerate();
             let near = |x: f64, size: f64| x.abs() <= AGAIN * size;
