@@ -22,6 +22,8 @@ use crate::orbit::{Obstacle, Orbit, Verdict};
 const AWAY: f64 = 1e-6;
 /// A rate below this part of what it is made of may be 0.
 const HIDDEN: f64 = 1e-10;
+/// A duration below this part of the period may be 0.
+const ROUNDING: f64 = 1e-12;
 /// Segments shorter than this part of the period are passed by the run of a longer one.
 const SHORT: f64 = 1e-5;
 
@@ -84,7 +86,9 @@ pub(crate) fn verdict(
 ) -> Result<Verdict, OrbitError> {
     let draft = &orbit.draft();
     let period = draft.period();
-    if let Some(segment) = draft.durations.iter().position(|it| *it < 0.0) {
+    // Where two clocks tick at once, a segment has no length, but for rounding: the run decides.
+    let is_backwards = |it: &f64| *it < -ROUNDING * period;
+    if let Some(segment) = draft.durations.iter().position(is_backwards) {
         return Ok(Verdict::Virtual(Obstacle::Backwards { segment }));
     }
     let mut touches = None;

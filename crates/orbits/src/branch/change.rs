@@ -197,6 +197,9 @@ impl Along<'_> {
             let event = &point.evaluation.ends[segment].event;
             return Some(if event.slides_behind() { event.rate_size() } else { 0.0 });
         }
+        if let Margin::Duration { .. } = margin {
+            return Some(point.orbit.period.abs());
+        }
         let (Margin::Inner { segment, rule }
         | Margin::AtEnd { segment, rule }
         | Margin::AtStart { segment, rule }) = *margin

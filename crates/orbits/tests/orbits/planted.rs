@@ -294,3 +294,18 @@ fn a_graze_is_no_flip() {
     let found: Vec<_> = branch.specials.iter().map(|it| it.kind).collect();
     assert_eq!(found, [SpecialKind::Fold, SpecialKind::GrazingSliding]);
 }
+
+/// Two clocks tick at once in every second period: the time between is 0, all along the branch.
+#[test]
+fn clocks_that_tick_at_once() {
+    let text = "parameter k = 0.5\nstate x = 1\nx' = -k*x\nevery 1 \"one\"\n  x := x + 1\n\
+                every 2 \"two\"\n  x := x - 0.3\nend = 9";
+    let branch = settled(text, [0.1, 2.0]);
+    assert!(branch.specials.is_empty(), "{:?}", branch.specials);
+    for orbit in &branch.points {
+        assert!(orbit.is_admissible() && orbit.is_stable(), "{orbit:?}");
+        let multiplier = (-2.0 * orbit.parameters[0]).exp();
+        let own = orbit.multipliers.as_ref().expect("one")[0][0];
+        assert!((own - multiplier).abs() < 1e-12, "{own} {multiplier}");
+    }
+}
