@@ -13,6 +13,8 @@ use crate::settle::require_time;
 /// How much two states of one attractor may differ, of the largest value of the component in the
 /// second halves of runs that settle.
 const SAME: f64 = 1e-3;
+/// What is smaller at last, of its largest value, has died out.
+const GONE: f64 = 1e-9;
 /// The greatest number of runs.
 const MOST_RUNS: usize = 1 << 24;
 
@@ -150,7 +152,8 @@ impl Orbits {
         let Ok(found) = self.settling(start, time, &coarse()) else { return Fate::Unknown };
         let run = &found.run;
         let [whole, late] = &found.sizes;
-        sizes.clone_from(late);
+        // What dies out never becomes the 0 of its orbit.
+        *sizes = whole.iter().zip(late).map(|(all, own)| own.max(GONE * all)).collect();
         if let Outcome::EndedByGuard { guard } = run.outcome {
             return Fate::Other(Attractor::End { mode: run.mode, rule: guard });
         }

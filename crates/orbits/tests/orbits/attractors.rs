@@ -197,3 +197,17 @@ fn an_orbit_goes_around_once() {
     let [Attractor::Orbit(orbit)] = &found.attractors[..] else { panic!("{found:?}") };
     assert_eq!((orbit.segments.len(), &found.labels[..]), (1, &[Some(0), Some(0)][..]));
 }
+
+/// An infection dies out under pulses of vaccination: runs come to the orbit without it.
+#[test]
+fn what_dies_out_is_no_other_attractor() {
+    let orbits = orbits(
+        "state S = 0.6, I = 0.01\nS' = 0.02*(1 - S) - 1.8*S*I\nI' = 1.8*S*I - 0.92*I\n\
+         every 2 \"pulse\"\n  S := 0.7*S",
+    );
+    let found = orbits.basins(&[], &Guess::default(), [0, 1], [&[0.3, 0.9], &[0.01, 0.2]], 600.0);
+    let found = found.expect("basins");
+    let [Attractor::Orbit(orbit)] = &found.attractors[..] else { panic!("{found:?}") };
+    assert!(orbit.segments[0].state[1].abs() < 1e-12 && orbit.is_stable(), "{orbit:?}");
+    assert_eq!(found.labels, [Some(0); 4]);
+}
