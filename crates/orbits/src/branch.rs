@@ -5,8 +5,9 @@
 //! kept, and each point says so. `point` steps along the branch, `test` has the functions that are
 //! zero at special orbits (some are bordered matrices, `borders`), `locate` finds their zeros,
 //! `meet` where branches meet, `change` where the verdict changes, by conditions that `watches`
-//! has, and `endless` where the period grows without bound. `curve` follows special orbits over two parameters, `switched` goes over to another branch,
-//! and `resumed` goes on with a branch that was written.
+//! has, and `endless` where the period grows without bound. `curve` follows special orbits over two
+//! parameters, `switched` goes over to another branch, and `resumed` goes on with a branch that was
+//! written.
 
 mod borders;
 mod change;
