@@ -258,6 +258,7 @@ impl<S: System> Examination<'_, S> {
         (h, values): (f64, &[PerGuard<S, f64>; 6]),
     ) -> Option<(usize, Crossing)> {
         let mut first: Option<(usize, Crossing)> = None;
+        let near = event.map_or(0.0, |event| self.near_zero(event.elapsed));
         for (guard, status) in statuses.parts().iter().enumerate() {
             let Status::Fires(crossing) = *status else { continue };
             if !search.open[guard] {
@@ -268,8 +269,7 @@ impl<S: System> Examination<'_, S> {
                 // In the bracket it crosses zero once, so that its sign shows on which side it is.
                 let before = crossing.sign * search.there[guard];
                 let later = (low - theta) * h > self.together(event.elapsed, event.elapsed)
-                    || high >= theta
-                        && before > self.near_zero(event.elapsed) * largest::<S>(guard, values);
+                    || high >= theta && before > near * largest::<S>(guard, values);
                 if later {
                     search.open[guard] = false;
                     continue;
@@ -387,8 +387,9 @@ impl<S: System> Examination<'_, S> {
         if self.phase.count() == 1 || h - event.elapsed > self.together(event.elapsed, h) {
             return;
         }
+        let part = self.near_zero(event.elapsed);
         for guard in 0..self.phase.count() {
-            let near = self.near_zero(event.elapsed) * largest::<S>(guard, values);
+            let near = part * largest::<S>(guard, values);
             let near = there[guard].abs() <= near;
             if near
                 && event.crossed[guard].is_none()
