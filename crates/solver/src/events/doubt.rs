@@ -16,6 +16,8 @@ pub(crate) const TOGETHER: f64 = 1e-12;
 const CLOSE: f64 = 1e-6;
 /// The part of that way on which a guard must change.
 const STAIRS: f64 = 64.0;
+/// The ratio of ways that have no measure in common.
+const UNEVEN: f64 = 1.618;
 /// The part of what surely exceeds noise that it may well be.
 const PART: f64 = 0.25;
 /// How much more than one step's rounding may have added up in the state, from step to step and
@@ -185,15 +187,21 @@ impl<S: System> Doubt<'_, S> {
         };
         let mut reach = (CLOSE * self.usual).max(256.0 * f64::EPSILON * s.abs());
         // Rounding makes stairs of a guard. On one of them it seems to be without noise.
-        let mut is_on_stair =
-            |way: f64| value(0.0) == value(way / STAIRS) || value(0.0) == value(-way / STAIRS);
-        while reach < self.usual && is_on_stair(reach) {
-            reach *= 16.0;
+        let (here, mut stair) = (value(0.0), 0.0);
+        while reach < self.usual {
+            let ends = [value(reach / STAIRS), value(-reach / STAIRS)];
+            if !ends.contains(&here) {
+                break;
+            }
+            stair = 0.5 * (ends[0] - ends[1]).abs();
+            reach *= 2.0;
         }
-        let noise = PART * noise(&mut value, -reach, reach, [0.0]);
+        // Places that are whole numbers of stairs apart show none.
+        let ways = [1.0, UNEVEN, UNEVEN * UNEVEN].map(|factor| factor * reach);
+        let noises = ways.map(|way| PART * noise(&mut value, -way, way, [0.0]));
         self.room.give(moved);
         self.room.give(slope);
-        hidden.max(noise)
+        noises.into_iter().fold(hidden.max(stair), f64::max)
     }
 }
 

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
+use crate::events::arrival::SAME;
 use crate::events::by_bounds::Sight;
 use crate::events::doubt::{ADDED, TOGETHER};
 use crate::events::event::{Crossed, Event, Found};
@@ -19,7 +20,8 @@ use crate::system::{PerGuard, Room, System};
 
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 pub(crate) const UNSEEN: f64 = 16.0;
-/// A guard that starts from a zero needs at most this many roundings of time to cross it.
+/// A guard that starts from a zero needs at most this many roundings of time to cross it, or a part
+/// of the step that hides much of its place.
 const FORGETS: f64 = 256.0;
 
 impl<S: System> Examination<'_, S> {
@@ -121,7 +123,7 @@ impl<S: System> Examination<'_, S> {
             }
             let (system, mode, s) = (self.system, self.phase.mode, self.trial.s);
             let mut ahead = self.room.state();
-            let most = FORGETS * self.drift;
+            let most = (FORGETS * self.drift).max(SAME * step.h);
             let mut reach = self.drift;
             let passes = loop {
                 S::State::shifted(&mut ahead, self.trial.y, self.trial.slope, reach);
