@@ -48,6 +48,7 @@ pub(crate) mod status;
 
 pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use arrival::HERE;
+pub(crate) use doubt::Doubt;
 pub(crate) use event::{Crossed, Event, Found, Note, only};
 pub(crate) use examination::{Examination, values_on};
 pub(crate) use first_guard::{UNSEEN, all_clearly_away};

@@ -42,11 +42,13 @@ fn main() {
         sum.closest += counts.closest;
     }
     println!("{count} systems: {sum:?}\n");
-    println!("| form | method | errors | other outcomes | wrong orders | wrong values | seeds |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| form | method | errors | other outcomes | wrong orders | wrong values | undecided | seeds |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     for form in FORMS {
         for method in ["dop853", "dopri5"] {
-            let mut kinds = [0; 4];
+            let mut kinds = [0; 5];
             let mut seeds = Vec::new();
             for (seed, _, faults) in &results {
                 for (_, _, fault) in faults.iter().filter(|one| (one.0, one.1) == (form, method)) {
@@ -56,13 +58,15 @@ fn main() {
                         Fault::Outcome(_) => 1,
                         Fault::Order(_) => 2,
                         Fault::Value(_) => 3,
+                        Fault::Undecided => 4,
                     }] += 1;
                 }
             }
-            let [errors, outcomes, orders, values] = kinds;
+            let [errors, outcomes, orders, values, undecided] = kinds;
             seeds.truncate(8);
             println!(
-                "| {form:?} | {method} | {errors} | {outcomes} | {orders} | {values} | {seeds:?} |"
+                "| {form:?} | {method} | {errors} | {outcomes} | {orders} | {values} | {undecided} \
+                 | {seeds:?} |"
             );
         }
     }

@@ -124,7 +124,7 @@ impl<S: System> Examination<'_, S> {
         self.statistics.field += 1;
         // On a step that was cut very short, rounding hides what the guard does.
         let mut reach = (REACH * elapsed.max(f64::EPSILON * self.usual)).max(shortest);
-        let longest = (REACH * self.usual).max(HIDES * f64::EPSILON * s.abs());
+        let longest = self.usual.max(HIDES * f64::EPSILON * s.abs());
         let (behind, ahead, shows) = loop {
             S::State::shifted(&mut moved, y, &slope, -reach);
             let behind = room.value(system, (mode, guard), s - reach, &moved);

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
+use crate::events::arrival::SAME;
 use crate::events::by_bounds::Sight;
 use crate::events::doubt::{ADDED, TOGETHER};
 use crate::events::event::{Crossed, Event, Found};
@@ -19,7 +20,8 @@ use crate::system::{PerGuard, Room, System};
 
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 pub(crate) const UNSEEN: f64 = 16.0;
-/// A guard that starts from a zero needs at most this many roundings of time to cross it.
+/// A guard that starts from a zero needs at most this many roundings of time to cross it, or a part
+/// of the step that hides much of its place.
 const FORGETS: f64 = 256.0;
 
 impl<S: System> Examination<'_, S> {
@@ -121,7 +123,7 @@ impl<S: System> Examination<'_, S> {
             }
             let (system, mode, s) = (self.system, self.phase.mode, self.trial.s);
             let mut ahead = self.room.state();
-            let most = FORGETS * self.drift;
+            let most = (FORGETS * self.drift).max(SAME * step.h);
             let mut reach = self.drift;
             let passes = loop {
                 S::State::shifted(&mut ahead, self.trial.y, self.trial.slope, reach);
@@ -258,6 +260,7 @@ impl<S: System> Examination<'_, S> {
         (h, values): (f64, &[PerGuard<S, f64>; 6]),
     ) -> Option<(usize, Crossing)> {
         let mut first: Option<(usize, Crossing)> = None;
+        let near = event.map_or(0.0, |event| self.near_zero(event.elapsed));
         for (guard, status) in statuses.parts().iter().enumerate() {
             let Status::Fires(crossing) = *status else { continue };
             if !search.open[guard] {
@@ -268,8 +271,7 @@ impl<S: System> Examination<'_, S> {
                 // In the bracket it crosses zero once, so that its sign shows on which side it is.
                 let before = crossing.sign * search.there[guard];
                 let later = (low - theta) * h > self.together(event.elapsed, event.elapsed)
-                    || high >= theta
-                        && before > self.near_zero(event.elapsed) * largest::<S>(guard, values);
+                    || high >= theta && before > near * largest::<S>(guard, values);
                 if later {
                     search.open[guard] = false;
                     continue;
@@ -387,8 +389,9 @@ impl<S: System> Examination<'_, S> {
         if self.phase.count() == 1 || h - event.elapsed > self.together(event.elapsed, h) {
             return;
         }
+        let part = self.near_zero(event.elapsed);
         for guard in 0..self.phase.count() {
-            let near = self.near_zero(event.elapsed) * largest::<S>(guard, values);
+            let near = part * largest::<S>(guard, values);
             let near = there[guard].abs() <= near;
             if near
                 && event.crossed[guard].is_none()

@@ -9,6 +9,7 @@
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard};
 use crate::lists::List;
+use crate::method::Store;
 use crate::system::{PerGuard, System};
 
 /// The part of its largest value that a guard may have where it has just fired.
@@ -21,14 +22,23 @@ pub(crate) fn near_zero(drift: f64, elapsed: f64) -> f64 {
     NEAR_ZERO.max(16.0 * drift / elapsed)
 }
 
+/// The time in which a state with this slope moves by its last digit. It is longer than the rounding
+/// of times that are close to 0.
+pub(crate) fn digit<V: Store>(y: &V, slope: &V) -> f64 {
+    let size = |of: &V| of.parts().iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+    let time = f64::EPSILON * size(y) / size(slope);
+    if time.is_finite() { time } else { 0.0 }
+}
+
 /// The active mode, and what is known about its guards at the start of the next step.
 pub(crate) struct Phase<S: System> {
     pub(crate) mode: S::Mode,
     pub(crate) guards: PerGuard<S, Guard>,
     /// Whether all guards are declared to be smooth.
     pub(crate) smooth: bool,
-    /// Whether guards of a black box have been active in the run, whose signs are sampled.
-    pub(crate) sampled: bool,
+    /// Whether guards have been active in the run that are not decided: those of a black box, whose
+    /// signs are sampled, and those that a reset has left about as close to zero as errors reach.
+    pub(crate) undecided: bool,
     /// The values of the guards.
     pub(crate) values: PerGuard<S, f64>,
     /// Whether any guard starts the next step from a known zero.
@@ -48,7 +58,7 @@ impl<S: System> Phase<S> {
             mode,
             guards: List::of(0, Guard::OFF),
             smooth: true,
-            sampled: false,
+            undecided: false,
             values: List::of(0, 0.0),
             at_zero: false,
             zero_orders: List::of(0, 0),
@@ -87,7 +97,7 @@ impl<S: System> Phase<S> {
         self.smooth = self.guards.parts().iter().all(Guard::needs_no_look);
         self.at_zero = false;
         let has_values = |guard: &Guard| guard.direction().has_values();
-        self.sampled |= !S::READABLE && self.guards.parts().iter().any(has_values);
+        self.undecided |= !S::READABLE && self.guards.parts().iter().any(has_values);
         for guard in 0..n {
             let (of, value) = (&self.guards[guard], self.values[guard]);
             if of.direction().has_values() && value.is_nan() {

@@ -216,7 +216,7 @@ impl<'a, S: System, O: Watcher<S>> Runner<'a, S, O> {
             s: self.clock.s,
             mode: self.phase.mode,
             state: self.state.clone(),
-            decided: !self.phase.sampled,
+            decided: !self.phase.undecided,
             statistics: self.statistics,
         }
     }

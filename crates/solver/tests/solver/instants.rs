@@ -97,6 +97,8 @@ impl DynamicObserver<usize> for Log {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     Error(RunError),
+    /// The order is another one, and the run says that it is not decided.
+    Undecided,
     Outcome(Outcome),
     /// Other guards act, or in another order.
     Order(String),
@@ -143,26 +145,28 @@ impl Case {
         let end = (double(self.plan.end) + more) * self.planted.scales.time;
         let y = self.planted.state(&y);
         let fixed = Start { mode, s, state: State::from(y) };
+        let first = |y: &[f64]| std::array::from_fn(|i| y[i]);
         let free = DynamicStart { mode, s, state: &y };
         let (mut log, options) = (Log::default(), &self.options);
         let ended = match form {
             Form::Fixed => run(method, &Fixed(&self.planted), fixed, end, options, &mut log)
-                .map(|run| (run.outcome, run.mode, run.state.data.0[0])),
+                .map(|run| (run.outcome, run.mode, run.state.data.0[0], run.decided)),
             Form::FixedBox => run(method, &FixedBox(&self.planted), fixed, end, options, &mut log)
-                .map(|run| (run.outcome, run.mode, run.state.data.0[0])),
+                .map(|run| (run.outcome, run.mode, run.state.data.0[0], true)),
             Form::Any => run_dynamic(method, &Any(&self.planted), free, end, options, &mut log)
-                .map(|run| (run.outcome, run.mode, std::array::from_fn(|i| run.state[i]))),
+                .map(|run| (run.outcome, run.mode, first(&run.state), run.decided)),
             Form::AnyBox => {
                 run_dynamic(method, &AnyBox(&self.planted), free, end, options, &mut log)
-                    .map(|run| (run.outcome, run.mode, std::array::from_fn(|i| run.state[i])))
+                    .map(|run| (run.outcome, run.mode, first(&run.state), true))
             }
         };
-        let (outcome, mode, state) = match ended {
+        let (outcome, mode, state, decided) = match ended {
             Ok(ended) => ended,
             Err(error) => return Some(Fault::Error(error)),
         };
         if let Some(fault) = self.compare(&log.seen) {
-            return Some(fault);
+            // A black box is never decided. A readable system may say so.
+            return Some(if decided { fault } else { Fault::Undecided });
         }
         let preempted = self.plan.acts.iter().filter(|act| act.then.is_none());
         let preempted: Vec<_> = preempted.map(|act| act.guard).collect();

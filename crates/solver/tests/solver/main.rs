@@ -9,6 +9,7 @@
 //! | `planted_roots` | random polynomials with planted roots as guards |
 //! | `plateaus` | guards that are zero on a stretch, or touch or leave zero without a slope |
 //! | `guard_rounding` | guards whose signs are lost in their own rounding |
+//! | `stairs` | guards that rounding leaves only stairs of |
 //! | `enclosures` | enclosures of formulas against their values at places |
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
@@ -52,4 +53,5 @@ mod serialization;
 mod singular;
 mod sliding;
 mod smooth_problems;
+mod stairs;
 mod strangers;

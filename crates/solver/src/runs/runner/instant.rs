@@ -10,8 +10,8 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
-use crate::events::phase::{NEAR_ZERO, near_zero};
-use crate::events::{Crossed, Event, Note, only};
+use crate::events::phase::{NEAR_ZERO, digit, near_zero};
+use crate::events::{Crossed, Doubt, Event, Note, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
 use crate::lists::List;
 use crate::method::Store;
@@ -33,6 +33,8 @@ struct Pending<Mode> {
 struct Transition<Mode> {
     from: Mode,
     guard: usize,
+    /// The slope with which the guard has crossed zero, infinite if it has not been located.
+    slope: f64,
     to: Mode,
 }
 
@@ -55,6 +57,8 @@ pub(super) struct Instant<S: System> {
     /// The state before the first transition.
     origin: S::State,
     transitions: SmallVec<[Transition<S::Mode>; 4]>,
+    /// The error of its place, NaN if it is not known yet.
+    error: f64,
     /// The last modes and guards of a chain that comes close to the limit.
     chain: Vec<(S::Mode, usize)>,
 }
@@ -66,6 +70,9 @@ const FAR: f64 = 1e-2;
 /// Rounding decides when a guard comes back that goes no farther in a phase than so many times what
 /// rounding hides.
 const CONFUSES: f64 = 16.0;
+/// It is in doubt whether a guard that has acted stands on its zero up to so many times what the
+/// errors of its instant explain.
+const DOUBTFUL: f64 = 16.0;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
 const HIDES: f64 = 16.0;
 /// By how much of their size components move to a place nearby, where guards are compared.
@@ -83,6 +90,7 @@ impl<S: System> Instant<S> {
             noted: SmallVec::new(),
             origin: S::State::room(n),
             transitions: SmallVec::new(),
+            error: f64::NAN,
             chain: Vec::new(),
         }
     }
@@ -138,7 +146,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.state.set(&event.state);
         self.rest.parts_mut().fill(0.0);
         let (mode, count) = (self.phase.mode, self.phase.count());
-        let Instant { pending, acted, noted, origin, transitions, .. } = &mut self.instant;
+        let Instant { pending, acted, noted, origin, transitions, error, .. } = &mut self.instant;
         pending.fit(count, None);
         acted.fit(count, None);
         if self.clock.phase > 0.0 {
@@ -146,6 +154,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             transitions.clear();
         }
         if transitions.is_empty() {
+            *error = f64::NAN;
             origin.set(&event.state);
         }
         // What has just been noted is of this instant too.
@@ -183,6 +192,11 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let pending = self.instant.pending[guard].take();
         let crossed = pending.map_or(Crossed::AT_ONCE, |pending| pending.crossed);
         let ends = self.phase.guards[guard].ends_run();
+        let slope = if self.phase.guards[guard].direction().has_values() {
+            crossed.slope
+        } else {
+            f64::INFINITY
+        };
         let hides = self.hides(event, guard, crossed);
         let before = self.state.clone();
         let to = if ends { from } else { self.system.transition(from, guard, s, &mut self.state) };
@@ -234,7 +248,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.room.guards = self.phase.count();
         self.statistics.guards += 1;
         self.instant.acted[guard] = Some((from, crossed));
-        self.instant.transitions.push(Transition { from, guard, to });
+        self.instant.transitions.push(Transition { from, guard, slope, to });
         let count = self.phase.count().max(self.instant.pending.parts().len());
         self.instant.pending.fit(count, None);
         self.instant.acted.fit(count, None);
@@ -390,8 +404,13 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             // A transition makes an error of time larger, but not so much.
             let slope = crossed.map_or(f64::INFINITY, |(_, crossed)| crossed.slope);
             let near = NEAR_ZERO * away <= hidden + slope * self.clock.drift();
-            if away <= hidden || near && away <= hidden + self.unsettled(guard) {
+            let more = if near && away > hidden { self.unsettled(guard) } else { 0.0 };
+            let known = hidden + more;
+            if away <= known {
                 self.phase.forgive(guard);
+            } else if direction.is_edge() && away <= DOUBTFUL * known {
+                // Errors of earlier events may have moved it.
+                self.phase.undecided = true;
             }
         }
     }
@@ -411,16 +430,21 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         // The guard that has acted stands on its zero only if it was close to it.
         let h = event.step.h;
         let size = act.largest.max(act.crossed.slope * h);
-        let near = if h > 0.0 { near_zero(self.clock.drift(), h) } else { NEAR_ZERO };
+        let near = if h > 0.0 {
+            near_zero(self.clock.drift() + digit(&event.state, &self.slope), h)
+        } else {
+            NEAR_ZERO
+        };
         let stands = !crossed.jump && (guard != act.guard || left.abs() <= near * size);
         (sense != 0.0).then_some(if stands { sense * left } else { 0.0 })
     }
 
-    /// By how much a guard would differ if the instant had come later by the rounding of its time,
+    /// By how much a guard would differ if the instant had come later by the error of its place,
     /// and everything had acted there as it has.
     fn unsettled(&mut self, guard: usize) -> f64 {
-        let (system, late) = (self.system, self.clock.s + self.clock.drift());
+        let (system, s) = (self.system, self.clock.s);
         let Some(&Transition { from, .. }) = self.instant.transitions.first() else { return 0.0 };
+        let late = s + self.error_of_place();
         let (mut slope, mut y) = (self.room.state(), self.room.state());
         system.field(from, self.clock.s, &self.instant.origin, &mut slope);
         S::State::shifted(&mut y, &self.instant.origin, &slope, late - self.clock.s);
@@ -433,6 +457,22 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.room.give(y);
         let change = (value - self.phase.values[guard]).abs();
         if same && change.is_finite() { change } else { 0.0 }
+    }
+
+    /// The error of the place of this instant: of its time, and of the guard that acted first.
+    fn error_of_place(&mut self) -> f64 {
+        let Instant { transitions, origin, error, .. } = &mut self.instant;
+        if error.is_nan() {
+            *error = self.clock.drift();
+            let first = transitions.first().filter(|first| first.slope.is_finite());
+            if let Some(&Transition { from, guard, slope, .. }) = first {
+                let (system, at, usual) = (self.system, (from, guard), self.h);
+                let (statistics, room) = (&mut self.statistics, &mut self.room);
+                let mut doubt = Doubt { system, at, usual, statistics, room };
+                *error += doubt.error((self.clock.s, &*origin), slope);
+            }
+        }
+        *error
     }
 
     /// The value that a guard may have by rounding where it is zero at this instant.
