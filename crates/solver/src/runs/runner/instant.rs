@@ -371,6 +371,11 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.room.give_row(before);
         let jumps = sign * self.phase.values[guard] < 0.0
             && self.phase.guards[guard].direction().acts_from(sign);
+        // A guard that stands on its zero before and behind does not jump.
+        let jumps = jumps && {
+            let hidden = self.hidden(event, guard);
+            sign.abs().max(self.phase.values[guard].abs()) > hidden
+        };
         let crossed = Crossed { slope: f64::INFINITY, jump: true, sign: sign.signum() };
         jumps.then_some(crossed)
     }
