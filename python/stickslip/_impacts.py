@@ -114,6 +114,8 @@ class Surface:
     unloading_stiffness_ratio: float | None = None
     #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
     hardening_per_m: float | None = None
+    #: Surface energy of adhesion in J/m², half the work of adhesion, in granular/dmt and granular/jkr.
+    surface_energy_j_per_m2: float | None = None
     #: Coefficient of normal restitution, instead of a damping.
     e_n: float | None = None
     #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.
@@ -450,6 +452,11 @@ def impact(
     count = _threads(threads)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
     surface = pair.surface
+    if surface.surface_energy_j_per_m2 is not None:
+        raise ValueError(
+            "surface_energy_j_per_m2: bodies with adhesion may stay together, and arrays of their "
+            "impacts are not computed; expected single impacts with impact()"
+        )
     if surface.dynamic_friction is not None and surface.friction > 0 and normal.size:
         if np.ptp(normal) != 0.0:
             raise ValueError(

@@ -223,8 +223,8 @@ fn no_friction_and_no_spring_are_limits() {
 #[test]
 fn laws_that_are_not_computed_say_why() {
     for (name, why) in [
-        ("granular/jkr", "adhesion is not computed"),
-        ("dmt", "adhesion is not computed"),
+        ("sjkr", "this adhesion is not computed"),
+        ("cohesion", "this adhesion is not computed"),
         ("rolling/sds", "rolling and twisting friction are not computed"),
         ("thornton", "Thornton's elastic-plastic force is not computed"),
     ] {

@@ -1,9 +1,12 @@
 //! A collision integrated from first touch to separation: start reading here.
 
+use stickslip_contact::adhesive::{AdhesiveContact, HELD};
 use stickslip_contact::domain::OutOfDomain;
+use stickslip_contact::general::GeneralContact;
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{DAMPING, STATE, T, U};
+use stickslip_contact::system::ContactSystem;
 use stickslip_contact::{Collision, Contact, EnergyLedger, Regime};
 use stickslip_solver::{
     EmbeddedPair, HybridSystem, Observer, Options, Outcome, Start, Statistics, run_with,
@@ -149,10 +152,14 @@ impl Collider {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let options = self.options_for(&contact)?;
-        if !contact.obeys_paper() {
-            return general::collide(self.pair, contact, &options, collision, &mut ());
+        if contact.obeys_paper() {
+            return self.observe(contact, &options, collision, &mut ());
         }
-        self.observe(contact, &options, collision, &mut ())
+        if contact.law().normal.is_adhesive() {
+            let system = AdhesiveContact::new(contact);
+            return general::collide(self.pair, system, &options, collision, &mut ());
+        }
+        general::collide(self.pair, GeneralContact::new(contact), &options, collision, &mut ())
     }
 
     /// As [`Self::collide`], and then follows the same switches once more by a Taylor method with
@@ -203,9 +210,18 @@ impl Collider {
             let statistics = self.observe(contact, &options, &mut collision, &mut record)?;
             return Ok((collision, statistics, History::of_paper(record)));
         }
-        let mut record = Record::before(general::system(contact));
+        if contact.law().normal.is_adhesive() {
+            let system = AdhesiveContact::new(contact).with_reversals();
+            let mut record = Record::before(system);
+            let statistics =
+                general::collide(self.pair, system, &options, &mut collision, &mut record)?;
+            require_separation(&collision)?;
+            return Ok((collision, statistics, History::of_adhesive(record)));
+        }
+        let system = GeneralContact::new(contact).with_reversals();
+        let mut record = Record::before(system);
         let statistics =
-            general::collide(self.pair, contact, &options, &mut collision, &mut record)?;
+            general::collide(self.pair, system, &options, &mut collision, &mut record)?;
         Ok((collision, statistics, History::of_other(record)))
     }
 
@@ -271,10 +287,14 @@ impl Collider {
         let options = self.recorded_options(&contact)?;
         if contact.obeys_paper() {
             let record = self.record(Regularized::new(contact), &options)?;
-            Ok(History::of_paper(record))
-        } else {
-            Ok(History::of_other(self.record(general::system(contact), &options)?))
+            return Ok(History::of_paper(record));
         }
+        if contact.law().normal.is_adhesive() {
+            let system = AdhesiveContact::new(contact).with_reversals();
+            return Ok(History::of_adhesive(self.record(system, &options)?));
+        }
+        let system = GeneralContact::new(contact).with_reversals();
+        Ok(History::of_other(self.record(system, &options)?))
     }
 
     /// Runs the contact of `system` and keeps its course.
@@ -291,6 +311,9 @@ impl Collider {
         let run = run_with(self.pair, &system, start, f64::INFINITY, options, &mut record)?;
         match run.outcome {
             Outcome::EndedByGuard { guard: END } => Ok(record),
+            Outcome::EndedByGuard { guard: HELD } => {
+                Err(CollisionError::Adheres { time: record.duration() })
+            }
             outcome => Err(CollisionError::Unfinished { outcome, time: record.duration() }),
         }
     }
@@ -341,4 +364,10 @@ impl Collider {
         }
         Ok(options)
     }
+}
+
+/// Refuses the course of bodies that stay together, which has no end.
+fn require_separation(collision: &Collision) -> Result<(), CollisionError> {
+    let time = collision.contact_time;
+    if collision.adheres { Err(CollisionError::Adheres { time }) } else { Ok(()) }
 }

@@ -10,6 +10,9 @@ use super::observed::Observed;
 /// Two bodies after their collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactOutcome {
+    /// Whether the bodies stay together for ever, held by adhesion: then what would be after the
+    /// contact is NaN, and the rest is up to where that is certain ([`Collision::adheres`]).
+    pub adheres: bool,
     /// Motions after the contact. Positions are those at impact, and a wall keeps its motion.
     pub motions: [Motion; 2],
     /// Impulse on the first body in N s; the second body receives the opposite one.
@@ -127,6 +130,7 @@ impl Encounter {
         let switches =
             if self.tangent.is_some() { self.switches(collision) } else { SmallVec::new() };
         ImpactOutcome {
+            adheres: collision.adheres,
             motions,
             impulse_n_s: impulse,
             eps_n: collision.eps_n,

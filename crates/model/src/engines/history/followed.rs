@@ -1,8 +1,10 @@
-//! The two systems whose runs make courses: the paper's contact and the contact of any law.
+//! The systems whose runs make courses: the paper's contact, and the contact of any law, with
+//! adhesion or without.
 
-use stickslip_contact::general::{self, CREST, ContactMode, GeneralContact, REVERSAL};
+use stickslip_contact::general::{self, CREST, ContactMode, REVERSAL};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::{Regularized, components};
+use stickslip_contact::system::ContactSystem;
 use stickslip_contact::{Regime, Side};
 use stickslip_solver::{Start, State, SwitchEvent};
 
@@ -76,6 +78,7 @@ impl Followed<{ components::STATE }> for Regularized {
             spring,
             tangential_force: -self.contact().kappa() * spring,
             velocity: self.velocity(y),
+            limit: self.normal_force(y),
         }
     }
 
@@ -92,12 +95,12 @@ impl Followed<{ components::STATE }> for Regularized {
     }
 }
 
-impl Followed<{ general::STATE }> for GeneralContact {
+impl<S: ContactSystem> Followed<{ general::STATE }> for S {
     type Mode = ContactMode;
     const CLOCK: usize = general::T;
 
     fn start(&self) -> Start<ContactMode, { general::STATE }> {
-        Start { mode: self.first(), s: 0.0, state: Self::start(self) }
+        Start { mode: self.first(), s: 0.0, state: ContactSystem::start(self) }
     }
 
     fn before_start(&self, time: f64) -> State<{ general::STATE }> {
@@ -105,7 +108,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
     }
 
     fn clock_rate(&self, y: &State<{ general::STATE }>) -> f64 {
-        Self::clock_rate(self, y)
+        ContactSystem::clock_rate(self, y)
     }
 
     fn snapshot(&self, mode: ContactMode, y: &State<{ general::STATE }>) -> Snapshot {
@@ -117,6 +120,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
             spring: self.spring(mode, y),
             tangential_force: -self.tangential_force(mode, y),
             velocity: self.velocity(y),
+            limit: self.limit(mode, y),
         }
     }
 
@@ -135,6 +139,6 @@ impl Followed<{ general::STATE }> for GeneralContact {
     }
 
     fn flight(&self, mode: ContactMode, y: &State<{ general::STATE }>) -> f64 {
-        Self::flight(self, mode, y)
+        ContactSystem::flight(self, mode, y)
     }
 }
