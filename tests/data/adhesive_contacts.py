@@ -181,7 +181,8 @@ class Contact:
                 y[1], self.turning = -1e-15, y[0] * (1.0 - 1e-9)
                 y[3] /= self.carried(r, -1.0)
             elif fired is sticks:
-                rest = side * self.limit(r) - self.b * self.eta(r) * y[2]
+                # A little below the limit, so that rounding does not lead back to it at once.
+                rest = side * self.limit(r) * (1.0 - 1e-11) - self.b * self.eta(r) * y[2]
                 y[3], side, phases = self.history_of(r, y[1], rest), 0.0, phases + "o"
             else:
                 side = 1.0 if fired is slips else -1.0

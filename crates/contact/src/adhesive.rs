@@ -19,9 +19,10 @@ mod equations;
 mod shape;
 
 use crate::contact::Contact;
-use crate::general::{Beginning, CREST, ContactMode, ModeProgress, REVERSAL, STATE, Stage, U, V};
+use crate::general::{
+    Beginning, CREST, ContactMode, ContactSystem, ModeProgress, REVERSAL, STATE, Stage, U, V,
+};
 use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step};
-use crate::system::ContactSystem;
 use equations::Equations;
 
 /// Number of guards.
@@ -169,7 +170,11 @@ impl ReadableSystem<STATE, GUARDS> for AdhesiveContact {
                 [below.from_zero(1), Guard::OFF]
             }
             (Regime::Slip, _) => [below, Guard::OFF],
-            (Regime::Stick, ModeProgress::Reset) => [below.from_zero(1), below],
+            (Regime::Stick, ModeProgress::Reset) => {
+                // Where u starts from 0, time grows as s².
+                let order = if self.equations.shape.starts_at_end() { 2 } else { 1 };
+                [below.from_zero(order), below]
+            }
             (Regime::Stick, ModeProgress::Switched) => {
                 [below.from_zero(if self.equations.remembers() { 2 } else { 1 }), below]
             }

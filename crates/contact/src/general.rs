@@ -28,13 +28,13 @@ use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State};
 pub(crate) mod decay;
 pub(crate) mod equations;
 mod exponents;
-mod start;
+mod system;
 
 use crate::contact::Contact;
 use crate::law::{ContactEnd, Law, Normal};
 use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step};
-use crate::system::ContactSystem;
 use equations::Equations;
+pub use system::ContactSystem;
 
 /// Number of components.
 pub const STATE: usize = 11;

@@ -9,9 +9,9 @@
 //! Start reading in [`Contact`]; then, in this order: `law` (a contact law as data), `contact`
 //! (parameters), [`phase`] (what all laws have in common), [`presets`] (the laws of particle
 //! codes), [`regularized`], [`general`] and [`adhesive`] (the equations of the paper's law, of any
-//! law, and of laws with adhesion as hybrid systems), [`system`] (what the last two have in common),
-//! `result` (what every engine returns), [`domain`] (ranges of engines), [`numerics`] (numbers with
-//! twice the digits, roots in a bracket).
+//! law, and of laws with adhesion as hybrid systems), `start` (how near a contact is to starting
+//! otherwise), `result` (what every engine returns), [`domain`] (ranges of engines), [`numerics`]
+//! (numbers with twice the digits, roots in a bracket).
 //!
 //! With the feature `serde`, results serialise themselves.
 
@@ -27,7 +27,7 @@ pub mod regularized;
 mod result;
 #[cfg(feature = "serde")]
 mod serialize;
-pub mod system;
+mod start;
 
 pub use contact::{Contact, OtherLaw};
 pub use law::{

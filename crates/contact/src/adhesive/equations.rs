@@ -110,13 +110,16 @@ impl Equations {
             progress: ModeProgress::Touched,
             heading: Side::Positive,
         };
-        let soft = self.shape.first() == 0.0 && self.powers(Stage::Main).0 > 0;
-        match self.remembers() {
-            false => Beginning::Slip,
+        let soft = self.shape.starts_at_end() && self.powers(Stage::Main).0 > 0;
+        if !self.remembers() {
+            Beginning::Slip
+        } else if soft {
             // The spring stiffens from 0: what it was set to turns it over.
-            true if soft => Beginning::Overturned,
-            true if self.stretching(mode, &self.start(psi)) < 0.0 => Beginning::Reset,
-            true => Beginning::Slip,
+            Beginning::Overturned
+        } else if self.stretching(mode, &self.start(psi)) < 0.0 {
+            Beginning::Reset
+        } else {
+            Beginning::Slip
         }
     }
 

@@ -2,11 +2,10 @@
 
 use stickslip_contact::adhesive::{AdhesiveContact, HELD};
 use stickslip_contact::domain::OutOfDomain;
-use stickslip_contact::general::GeneralContact;
+use stickslip_contact::general::{ContactSystem, GeneralContact};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{DAMPING, STATE, T, U};
-use stickslip_contact::system::ContactSystem;
 use stickslip_contact::{Collision, Contact, EnergyLedger, Regime};
 use stickslip_solver::{
     EmbeddedPair, HybridSystem, Observer, Options, Outcome, Start, Statistics, run_with,
@@ -359,7 +358,12 @@ impl Collider {
         // A first phase so much shorter than a step is lost in the rounding of the guard that ends
         // it.
         let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
-        if damped && onset < BRIEF {
+        if contact.law().normal.is_adhesive() {
+            // The length of the first phase in s, up to a factor.
+            let pull = contact.kappa() * contact.psi();
+            let brief = contact.law().pull_off.sqrt() / pull.sqrt().max(4.0 * pull);
+            options.first_step = options.first_step.map(|h| h.min(4.0 * brief));
+        } else if damped && onset < BRIEF {
             options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
         }
         Ok(options)

@@ -1,10 +1,10 @@
 //! Adhesion: DMT and JKR with friction, and bodies that stay together.
 
 use serde_json::Value;
-use stickslip_model::spheres::{Body, BodyPair, Constants, Forces, Material, Sphere};
+use stickslip_model::spheres::{Body, BodyPair, Constants, Encounter, Forces, Material, Sphere};
 use stickslip_model::{
     Collision, CollisionError, Contact, ContactEnd, Damping, Engine, HistoryOf, Law, Normal,
-    Tangential, presets, restitution,
+    Tangential, Tolerances, presets, restitution,
 };
 
 use crate::common::file;
@@ -47,7 +47,7 @@ fn of_case(case: &Value) -> Contact {
 fn adhesive_contacts_are_those_of_another_program() {
     let reference = file("adhesive_contacts");
     let cases = reference["cases"].as_array().unwrap();
-    let mut ended = 0;
+    let (mut ended, mut wrong) = (0, Vec::new());
     for case in cases {
         let found = collide(of_case(case));
         assert_eq!(found.adheres, case["adheres"] == true, "{case}");
@@ -58,14 +58,16 @@ fn adhesive_contacts_are_those_of_another_program() {
         let expected = [number("eps_t"), number("eps_n"), number("time")];
         let own = [found.eps_t(), found.eps_n, found.contact_time];
         let close = expected.iter().zip(own).all(|(expected, own)| (expected - own).abs() < 1e-7);
-        assert!(close, "{own:?} {case}");
-        assert_eq!(found.itinerary(), case["itinerary"].as_str().unwrap(), "{case}");
+        if !close || found.itinerary() != case["itinerary"] {
+            wrong.push(format!("{own:?} {} {case}", found.itinerary()));
+        }
         let energy = found.energy;
         assert!(energy.normal_unbalanced().abs() < 1e-11, "{energy:?}");
         assert!(energy.tangential_unbalanced().abs() < 1e-11, "{energy:?}");
         ended += 1;
     }
-    assert!(cases.len() == 200 && ended > 120, "{ended}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(cases.len() == 200 && ended > 180, "{ended}");
 }
 
 /// The same contacts as LAMMPS steps through them, whose overlaps are not quite small.
@@ -74,11 +76,14 @@ fn adhesive_contacts_are_those_of_lammps() {
     let reference = file("lammps_adhesion");
     let cases = reference["cases"].as_array().unwrap();
     for case in cases {
-        let found = collide(of_case(case));
+        let contact = of_case(case);
+        let found = collide(contact);
         assert_eq!(found.adheres, case["adheres"] == true, "{case}");
         if !found.adheres {
             let number = |name: &str| case[name].as_f64().unwrap();
-            assert!((found.eps_t() - number("eps_t")).abs() < 2e-4, "{} {case}", found.eps_t());
+            // Overlaps are 2e-5 of the radius.
+            let off = contact.psi() * (found.eps_t() - number("eps_t")).abs();
+            assert!(off < 2e-5 + 2e-4 * contact.psi(), "{off} {case}");
             assert!((found.eps_n - number("eps_n")).abs() < 2e-4, "{} {case}", found.eps_n);
         }
     }
@@ -144,6 +149,20 @@ fn slow_bodies_stay_together() {
             assert_eq!(found.adheres, adheres, "{end:?} {velocity}");
             assert_eq!(found.eps_n.is_nan() && found.eps_t().is_nan(), adheres);
         }
+        let impact = pair.impact(2.0 * critical, critical).unwrap();
+        let first = Encounter::of_velocities(
+            &sphere,
+            &Body::Sphere(sphere),
+            (2.0 * critical, critical),
+            forces,
+        );
+        let outcome = first.unwrap().outcome(&collide(impact.contact));
+        let pull_off = 3.0 * std::f64::consts::PI * surface_energy * 0.5 * radius;
+        for switch in &outcome.switches {
+            let limit = 0.3 * (switch.normal_force_n + 2.0 * pull_off);
+            assert!((switch.tangential_force_n.abs() / limit - 1.0).abs() < 1e-12);
+        }
+        assert!(outcome.energy.unbalanced_j().abs() < 1e-12 * outcome.energy.kinetic_before_j);
     }
 }
 
@@ -192,9 +211,9 @@ fn weak_adhesion_is_nearly_none() {
 /// has ∫ F dt = 1 + ε_n where nothing else acts.
 #[test]
 fn sliding_rubs_with_twice_the_pull_off() {
-    for name in ["granular/dmt/viscoelastic/mindlin", "granular/jkr/viscoelastic/mindlin"] {
-        let pull_off = 0.2;
-        let found = collide(contact([200.0, 12.0, 0.0, 0.0], named(name, pull_off)));
+    for kind in ["dmt", "jkr"] {
+        let (pull_off, name) = (0.2, format!("granular/{kind}/viscoelastic/linear_history"));
+        let found = collide(contact([200.0, 12.0, 0.0, 0.0], named(&name, pull_off)));
         assert_eq!(found.itinerary(), "o+", "{name}");
         let first = found.switches[0];
         assert!(first.time < 0.01);
@@ -202,6 +221,38 @@ fn sliding_rubs_with_twice_the_pull_off() {
         let expected = 12.0 - (1.0 + found.eps_n) - 2.0 * pull_off * found.contact_time;
         assert!((found.final_velocity - expected).abs() < 2.0 * first.time, "{name}");
     }
+}
+
+/// Two methods with other tolerances find the same phases, over the whole range.
+#[test]
+fn methods_agree_with_adhesion() {
+    let mut random = fastrand::Rng::with_seed(1971);
+    let (mut held, mut compared) = (0, 0);
+    for _ in 0..600 {
+        let mut between = |low: f64, high: f64| low * (high / low).powf(random.f64());
+        let numbers =
+            [between(1e-3, 1e4), between(1e-4, 30.0), between(1e-4, 10.0), between(0.05, 5.0)];
+        let pull_off = between(1e-7, 10.0);
+        let preset = presets::ADHESIVE[random.usize(..presets::ADHESIVE.len())];
+        let end = if random.bool() { preset.law.end } else { ContactEnd::Overlap };
+        let contact = contact(numbers, Law { pull_off, end, ..preset.law });
+        let usual = collide(contact);
+        let (other, _) = Engine::Dopri5(Tolerances { rtol: 1e-11, atol: 1e-11 })
+            .collide(contact)
+            .unwrap_or_else(|error| panic!("{contact:?}: {error}"));
+        assert_eq!(usual.adheres, other.adheres, "{contact:?}");
+        if usual.adheres {
+            held += 1;
+            continue;
+        }
+        // A switch nearer to a graze or to the end than the tolerance may differ, but not the end.
+        let sure = usual.itinerary() == other.itinerary();
+        compared += usize::from(sure);
+        let off = (usual.eps_t() - other.eps_t()).abs() * contact.psi().min(1.0);
+        assert!(off < 1e-7, "{off} {contact:?}");
+        assert!((usual.eps_n - other.eps_n).abs() < 1e-6, "{contact:?}");
+    }
+    assert!(held > 60 && compared + held > 590, "{held} {compared}");
 }
 
 /// Every combination with adhesion runs or is refused with the reason.

@@ -11,10 +11,9 @@
 //! one and is the same at all points of a plane, so its end is known beforehand.
 
 use stickslip_model::general::{
-    Beginning, CREST, ContactMode, GUARDS, GeneralContact, REVERSAL, STATE,
+    Beginning, CREST, ContactMode, ContactSystem, GUARDS, GeneralContact, REVERSAL, STATE,
 };
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
-use stickslip_model::system::ContactSystem;
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::margin::{
     Exit, FollowedRun, Margin, Margins, Place, follow, margin, margins,

@@ -1,10 +1,9 @@
 //! The systems whose runs make courses: the paper's contact, and the contact of any law, with
 //! adhesion or without.
 
-use stickslip_contact::general::{self, CREST, ContactMode, REVERSAL};
+use stickslip_contact::general::{self, CREST, ContactMode, ContactSystem, REVERSAL};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::{Regularized, components};
-use stickslip_contact::system::ContactSystem;
 use stickslip_contact::{Regime, Side};
 use stickslip_solver::{Start, State, SwitchEvent};
 

@@ -1,9 +1,8 @@
 //! The integration of a contact with any law, with adhesion or without.
 
 use stickslip_contact::adhesive::HELD;
-use stickslip_contact::general::{CREST, ContactMode, DAMPING, REVERSAL, STATE, T};
+use stickslip_contact::general::{CREST, ContactMode, ContactSystem, DAMPING, REVERSAL, STATE, T};
 use stickslip_contact::phase::END;
-use stickslip_contact::system::ContactSystem;
 use stickslip_contact::{Collision, ContactEnd, CoulombTest, EnergyLedger, Law, Regime, Switch};
 use stickslip_solver::{
     EmbeddedPair, HybridSystem, Observer, Options, Outcome, RunError, Start, State, Statistics,

@@ -1,8 +1,8 @@
 //! How near a contact is to starting otherwise.
 
-use super::GeneralContact;
 use crate::adhesive::AdhesiveContact;
 use crate::contact::Contact;
+use crate::general::GeneralContact;
 
 impl Contact {
     /// How badly the start of contact is conditioned: `None` unless the dashpot exceeds the limit

@@ -2,8 +2,8 @@
 
 use stickslip_solver::State;
 
+use super::{ContactMode, STATE};
 use crate::contact::Contact;
-use crate::general::{ContactMode, STATE};
 
 /// A contact with the components and modes of [`general`](crate::general): one of any law, or one
 /// with adhesion.
