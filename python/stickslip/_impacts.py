@@ -114,7 +114,7 @@ class Surface:
     unloading_stiffness_ratio: float | None = None
     #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
     hardening_per_m: float | None = None
-    #: Surface energy of adhesion in J/m², half the work of adhesion, in granular/dmt and granular/jkr.
+    #: Surface energy of adhesion in J/m², half the work of adhesion, where the law has it.
     surface_energy_j_per_m2: float | None = None
     #: Coefficient of normal restitution, instead of a damping.
     e_n: float | None = None

@@ -11,8 +11,8 @@ With the overlap x, the contact radius r and the pull-off force f, in scaled uni
 
 The variable is x: the radius of JKR is found from it at every step. Each phase is integrated by
 scipy's DOP853 with short steps, and ends where one of its conditions changes sign. A contact ends
-at x = 0, in JKR where dF/dr = 0 (end force) or dx/dr = 0 (end overlap); the bodies stay together where v rises through 0 behind greatest
-compression, or where neither has happened after a long time.
+at x = 0, in JKR where dF/dr = 0 (end force) or dx/dr = 0 (end overlap); the bodies stay together
+where v rises through 0 behind greatest compression, or where neither has happened after long.
 
 Run:  python adhesive_contacts.py > adhesive_contacts.json
 """
@@ -160,9 +160,8 @@ class Contact:
             for event in events:
                 event.terminal, event.direction = True, -1.0
             longest = 0.01 / (1.0 + math.sqrt(self.kappa) + self.a)
-            run = solve_ivp(
-                slope, (t, LONGEST), y, "DOP853", events=events, max_step=longest, rtol=1e-12, atol=1e-14
-            )
+            accuracy = {"max_step": longest, "rtol": 1e-12, "atol": 1e-14}
+            run = solve_ivp(slope, (t, LONGEST), y, "DOP853", events=events, **accuracy)
             assert run.success, run.message
             t, y = run.t[-1], list(run.y[:, -1])
             fired = [event for event, times in zip(events, run.t_events) if len(times)]
@@ -199,11 +198,12 @@ def main():
     cases = []
     for index in range(2 * COUNT):
         eta = draw.choice(["linear", "viscoelastic"])
-        history, tangential = draw.choice(
-            [(h, t) for h in ("displacement", "force") for t in ("constant", "mindlin")] + [("none", "constant")]
-        )
+        springs = [(h, t) for h in ("displacement", "force") for t in ("constant", "mindlin")]
+        history, tangential = draw.choice([*springs, ("none", "constant")])
         damped = draw.random() < 0.8
-        soft = index % 2 == 0 and history == "displacement" and tangential == "mindlin" and eta == "linear"
+        # What a dashpot sets a spring to that stiffens from 0 has no plain equation.
+        soft = (history, tangential, eta) == ("displacement", "mindlin", "linear")
+        soft = soft and index % 2 == 0
         cases.append(
             {
                 "normal": "jkr" if index % 2 else "dmt",

@@ -6,12 +6,12 @@
 //! quartic, whose derivative is infinite where the overlap is least. As a variable it is neither:
 //! the end of contact is where u falls to a known value, at the rate v.
 //!
-//! Coulomb's limit is the elastic force plus twice the force F_po that separates the bodies. Nothing
-//! of this force vanishes at the ends of contact, so that there is no attracting tail, and no power
-//! of u to be divided out.
+//! Coulomb's limit is the elastic force plus twice the force F_po that separates the bodies. It
+//! does not vanish at the ends of contact, so that there is no attracting tail, and no power of u
+//! to be divided out.
 //!
-//! Whether the bodies stay together is an event: the energy of the normal motion only falls, and once it is
-//! below that of bodies at rest at the end of contact ([`HELD`]), they never get there.
+//! Whether the bodies stay together is an event: the energy of the normal motion only falls, and
+//! once it is below that of bodies at rest at the end of contact ([`HELD`]), they never get there.
 
 use stickslip_solver::{Direction, Guard, Number, ReadableSystem, State};
 
@@ -71,7 +71,7 @@ impl AdhesiveContact {
     fn after(mode: ContactMode, guard: usize) -> ContactMode {
         let progress = ModeProgress::Switched;
         match (guard, mode.regime) {
-            (REVERSAL, _) => mode,
+            (END | HELD | REVERSAL, _) => mode,
             (CREST, _) => {
                 let progress = ModeProgress::Settled;
                 ContactMode { stage: Stage::Unloading, progress, ..mode }

@@ -303,7 +303,7 @@ impl Law {
             Normal::Linear => "x",
             Normal::Hertz => "x^(3/2)",
             Normal::Dmt => "x^(3/2) − F_po",
-            Normal::Jkr => "r³ − 2 √F_po r^(3/2) with x = r² − (4/3) √(F_po r)",
+            Normal::Jkr => "r³ − 2 √F_po r^(3/2)",
         };
         let root = if self.normal == Normal::Jkr { "r" } else { "√x" };
         let eta = match self.damping {
@@ -326,6 +326,8 @@ impl Law {
             (true, false) => format!("F = {elastic} + {eta} v"),
             (true, true) => format!("F = max(0, {elastic} + {eta} v)"),
         };
+        let overlap =
+            if self.normal == Normal::Jkr { "x = r² − (4/3) √(F_po r), " } else { "" };
         let stiffness = match self.tangential {
             Tangential::Constant => "κ".to_owned(),
             Tangential::Mindlin => format!("κ {root}"),
@@ -367,7 +369,7 @@ impl Law {
             let Friction { dynamic, decay } = self.friction;
             format!("({dynamic} + {} e^(−{decay} |w|)) |F|", 1.0 - dynamic)
         };
-        format!("{normal}; {tangential}; |Q| ≤ {limit}{beside}; ends at {end}")
+        format!("{overlap}{normal}; {tangential}; |Q| ≤ {limit}{beside}; ends at {end}")
     }
 
     /// The law without the spring: what becomes of the law as κ vanishes.

@@ -199,7 +199,7 @@ fn all(out: &mut dyn Write) -> io::Result<()> {
     }
     writeln!(out, "\nLAMMPS, with adhesion: with --pull-off, or the surface energy of bodies")?;
     for preset in presets::ADHESIVE {
-        writeln!(out, "  {:<46} {}", preset.name, preset.law.equations())?;
+        writeln!(out, "  {:<48} {}", preset.name, preset.law.equations())?;
     }
     writeln!(out, "\n+limit_damping may be added to a name. `stickslip laws NAME` says more.")
 }

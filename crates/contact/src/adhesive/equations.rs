@@ -270,8 +270,8 @@ impl Equations {
         [end, same, other, y[V], y[W], energy]
     }
 
-    /// How fast the spring would leave its limit in stick, s dQ/ds − dL/ds, times or over u
-    /// where that is smooth and does not vanish at the ends of contact. Slip ends where it vanishes.
+    /// How fast the spring would leave its limit in stick, s dQ/ds − dL/ds, times or over u:
+    /// smooth, and not 0 at the ends of contact. Slip ends where it vanishes.
     #[inline(always)]
     fn stretching<T: Number>(&self, mode: ContactMode, y: &[T; STATE]) -> T {
         let (u, v, w) = (y[U], y[V], self.velocity(y));

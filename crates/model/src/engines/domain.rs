@@ -28,9 +28,9 @@ const DAMPED: Domain = Domain {
     damping: (1e-8, 1e4),
 };
 
-/// The range of the pull-off force. What is weaker acts for less than a step at the start of
-/// contact, and what is stronger turns the motion many times faster than the elastic force.
-const PULL_OFF: (f64, f64) = (1e-8, 1e4);
+/// The range of the pull-off force f. What is weaker acts for less than a step at the start of
+/// contact. With what is stronger, ε_n is lost in the energy of the attraction, f^{5/3} in size.
+const PULL_OFF: (f64, f64) = (1e-8, 1e2);
 /// The strongest damping beside adhesion: what it damps away takes steps of its own.
 const ADHESIVE_DAMPING: f64 = 1e2;
 

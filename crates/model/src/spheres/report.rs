@@ -108,8 +108,8 @@ impl ImpactReport {
         &self.outcome.motions[..self.encounter.spheres().count()]
     }
 
-    /// Refuses a report with a result that is not a finite number, but for bodies that stay together. [`Collision::require_finite`]
-    /// checks the collision.
+    /// Refuses a report with a result that is not a finite number, but for bodies that stay
+    /// together. [`Collision::require_finite`] checks the collision.
     ///
     /// # Errors
     /// [`NotFinite`] names the first.

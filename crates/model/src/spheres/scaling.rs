@@ -238,8 +238,8 @@ impl Impact {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
-    /// Largest compression ξ in m without damping and adhesion: (5/4)^{2/5} length units, and one where the
-    /// force is linear. With damping ξ stays below it.
+    /// Largest compression ξ in m without damping and adhesion: (5/4)^{2/5} length units, and one
+    /// where the force is linear. With damping ξ stays below it.
     pub fn largest_compression_m(&self) -> f64 {
         match self.pair.law.normal {
             Normal::Linear => self.length_unit_m(),
@@ -247,8 +247,8 @@ impl Impact {
         }
     }
 
-    /// Largest normal force F_n in N without damping and adhesion: (5/4)^{3/5} force units, and one where it is
-    /// linear.
+    /// Largest normal force F_n in N without damping and adhesion: (5/4)^{3/5} force units, and one
+    /// where it is linear.
     pub fn largest_normal_force_n(&self) -> f64 {
         match self.pair.law.normal {
             Normal::Linear => self.force_unit_n(),

@@ -98,14 +98,14 @@ fn results(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     if outcome.adheres {
         writeln!(out, "{ADHERES}\n")?;
     }
-    let known = |value: f64| Some(value).filter(|_| !outcome.adheres);
+    let restitution = |value| if outcome.adheres { "none".to_owned() } else { optional(value) };
     pairs(
         out,
         &[
             ("normal velocity g_n [m/s]", number(encounter.normal_m_per_s)),
             ("tangential velocity g_t [m/s]", number(encounter.tangential_m_per_s)),
-            ("normal restitution ε_n", optional(known(outcome.eps_n))),
-            ("tangential restitution ε_t", optional(outcome.eps_t.and_then(known))),
+            ("normal restitution ε_n", restitution(Some(outcome.eps_n))),
+            ("tangential restitution ε_t", restitution(outcome.eps_t)),
             ("contact time [s]", number(outcome.contact_time_s)),
             ("switches", outcome.switches.len().to_string()),
             ("reversals of the motion", impact.reversals().to_string()),

@@ -1,6 +1,7 @@
 //! The systems whose runs make courses: the paper's contact, and the contact of any law, with
 //! adhesion or without.
 
+use stickslip_contact::adhesive::HELD;
 use stickslip_contact::general::{self, CREST, ContactMode, ContactSystem, REVERSAL};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::{Regularized, components};
@@ -129,6 +130,7 @@ impl<S: ContactSystem> Followed<{ general::STATE }> for S {
 
     fn begins(event: &SwitchEvent<ContactMode, { general::STATE }>) -> Begins {
         match event.guard {
+            HELD => Begins::ContactEnd,
             REVERSAL if event.from == event.to => Begins::Nothing,
             REVERSAL | CREST => Begins::Part,
             END if event.from.stage == event.to.stage => Begins::ContactEnd,

@@ -191,6 +191,7 @@ impl<S: ContactSystem> Observer<ContactMode, STATE> for Account<'_, S> {
             // The phase goes on.
             CREST => self.phase.stage = event.to.stage,
             END if event.from.stage == event.to.stage => {}
+            HELD => {}
             // Slip goes on where the normal force begins to attract.
             END if event.to.regime == self.phase.regime => {
                 self.leave(&event.before);
