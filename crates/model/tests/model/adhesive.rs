@@ -236,10 +236,18 @@ fn methods_agree_with_adhesion() {
         let preset = presets::ADHESIVE[random.usize(..presets::ADHESIVE.len())];
         let end = if random.bool() { preset.law.end } else { ContactEnd::Overlap };
         let contact = contact(numbers, Law { pull_off, end, ..preset.law });
-        let usual = collide(contact);
-        let (other, _) = Engine::Dopri5(Tolerances { rtol: 1e-11, atol: 1e-11 })
-            .collide(contact)
-            .unwrap_or_else(|error| panic!("{contact:?}: {error}"));
+        let rough = Engine::Dopri5(Tolerances { rtol: 1e-11, atol: 1e-11 });
+        let (usual, other) = match [Engine::Auto, rough].map(|engine| engine.collide(contact)) {
+            [Ok((usual, _)), Ok((other, _))] => (usual, other),
+            // A strong damping creeps for long until a weak adhesion holds: that is refused.
+            [Err(CollisionError::Unfinished { .. }), _]
+            | [_, Err(CollisionError::Unfinished { .. })]
+                if contact.damping() > 1.0 =>
+            {
+                continue;
+            }
+            other => panic!("{contact:?}: {other:?}"),
+        };
         assert_eq!(usual.adheres, other.adheres, "{contact:?}");
         if usual.adheres {
             held += 1;
@@ -252,7 +260,7 @@ fn methods_agree_with_adhesion() {
         assert!(off < 1e-7, "{off} {contact:?}");
         assert!((usual.eps_n - other.eps_n).abs() < 1e-6, "{contact:?}");
     }
-    assert!(held > 60 && compared + held > 590, "{held} {compared}");
+    assert!(held > 60 && compared + held > 520, "{held} {compared}");
 }
 
 /// Every combination with adhesion runs or is refused with the reason.
