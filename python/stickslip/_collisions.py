@@ -124,14 +124,22 @@ class Collision(Tabular):
         return str(self._fields["method"]["name"])
 
     @property
+    def adheres(self) -> bool:
+        """Whether the bodies stay together for ever, held by adhesion.
+
+        Then eps_t and eps_n are NaN, and all else is up to where that is certain.
+        """
+        return bool(self._fields.get("adheres", False))
+
+    @property
     def eps_t(self) -> float:
-        """Coefficient of tangential restitution."""
-        return float(self._fields["eps_t"])
+        """Coefficient of tangential restitution; NaN if the bodies stay together."""
+        return float("nan") if self.adheres else float(self._fields["eps_t"])
 
     @property
     def eps_n(self) -> float:
-        """Coefficient of normal restitution."""
-        return float(self._fields["eps_n"])
+        """Coefficient of normal restitution; NaN if the bodies stay together."""
+        return float("nan") if self.adheres else float(self._fields["eps_n"])
 
     @property
     def w_final(self) -> float:

@@ -114,6 +114,8 @@ class Surface:
     unloading_stiffness_ratio: float | None = None
     #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
     hardening_per_m: float | None = None
+    #: Surface energy of adhesion in J/m², half the work of adhesion, where the law has it.
+    surface_energy_j_per_m2: float | None = None
     #: Coefficient of normal restitution, instead of a damping.
     e_n: float | None = None
     #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.
@@ -308,7 +310,8 @@ class Impacts(Tabular):
     """Arrays of impacts, from `impact`, in the order and shape of the velocities.
 
     Where an impact has no result, its numbers are NaN, and `failures` says why. Where nothing is
-    tangential, eps_t and centre_e_t are NaN.
+    tangential, eps_t and centre_e_t are NaN, and where bodies stay together by adhesion, all that
+    would be afterwards is.
     """
 
     def __init__(
@@ -450,19 +453,20 @@ def impact(
     count = _threads(threads)
     chosen = _laws.arguments(pair.law, pair._pair.tangential_damping)
     surface = pair.surface
+    terms: dict[str, Any] = {}
     if surface.dynamic_friction is not None and surface.friction > 0 and normal.size:
-        if np.ptp(normal) != 0.0:
-            raise ValueError(
-                "dynamic_friction: the scaled decay grows with the normal velocity, and a call has "
-                "one law; expected one normal velocity a call"
-            )
         alpha, mu = pair._pair.reduction
-        decay = (surface.friction_decay_s_per_m or 0.0) * mu / alpha * float(normal.flat[0])
-        friction = {"dynamic": surface.dynamic_friction / mu, "decay": decay}
-        law = {**_laws.terms(pair.law), "friction": friction}
+        decay = (surface.friction_decay_s_per_m or 0.0) * mu / alpha
+        decay *= _one_velocity(normal, "dynamic_friction: the scaled decay grows")
+        terms["friction"] = {"dynamic": surface.dynamic_friction / mu, "decay": decay}
+    if surface.surface_energy_j_per_m2 is not None and normal.size:
+        velocity = _one_velocity(normal, "surface_energy_j_per_m2: the scaled pull-off force falls")
+        terms["pull_off"] = pair._pair.pull_off(velocity)
+    if terms:
+        law = {**_laws.terms(pair.law), **terms}
         chosen = _laws.arguments(law, pair._pair.tangential_damping)
     if surface.friction == 0:
-        chosen = _laws.arguments(_laws.without_friction(pair.law), 0.0)
+        chosen = _laws.arguments({**_laws.without_friction(pair.law), **terms}, 0.0)
 
     def made(
         found: tuple[dict[str, Any], Floats],
@@ -486,6 +490,16 @@ def impact(
     with keeping(done):
         found = pair._pair.impacts(flat, engine, _strict(errors), count)
     return made(found, (normal, tangential), shape)
+
+
+def _one_velocity(normal: Floats, what: str) -> float:
+    """The normal velocity of all impacts, on which a term of the law depends."""
+    if np.ptp(normal) != 0.0:
+        raise ValueError(
+            f"{what} with the normal velocity, and a call has one law; expected one normal "
+            "velocity a call"
+        )
+    return float(normal.flat[0])
 
 
 def _known(place: str, fields: Any, *names: str) -> None:

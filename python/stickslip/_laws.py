@@ -12,12 +12,14 @@ import numpy as np
 
 from stickslip import _native
 
-#: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz"),
-#: damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening"), tangential
-#: ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
+#: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz",
+#: "dmt", "jkr"), damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening"),
+#: tangential ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
 #: (bool), end ("force", "overlap"), coulomb_test ("total", "spring"), and friction, a mapping with
 #: the numbers dynamic, mu_d/mu_s, and decay, B: Coulomb's limit is then
-#: (dynamic + (1 - dynamic) exp(-B |w|)) |F|, and mu of psi is mu_s. A term that is not given is
+#: (dynamic + (1 - dynamic) exp(-B |w|)) |F|, and mu of psi is mu_s. With adhesion, "dmt" and "jkr",
+#: there is also pull_off, the scaled force that separates the bodies:
+#: {**laws()["granular/dmt/viscoelastic/mindlin"].law, "pull_off": 0.1}. A term that is not given is
 #: that of the paper's law.
 Law: TypeAlias = str | Mapping[str, Any]
 
@@ -163,6 +165,10 @@ def _objection(text: str) -> str:
             if set(numbers) <= {"dynamic", "decay"} and numbers:
                 continue
             return f"law: friction = {value!r}; expected the numbers dynamic and decay"
+        if name == "pull_off":
+            if isinstance(value, int | float) and not isinstance(value, bool):
+                continue
+            return f"law: pull_off = {value!r}; expected a number"
         if name not in values:
             listed = f"{_listed(values)}{_near(name, values)}"
             return f"law: {name!r} is no term; expected one of {listed}"

@@ -50,8 +50,12 @@ def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
         slow = np.exp(-friction["decay"] * np.abs(course["velocity"]))
         most = most * (friction["dynamic"] + (1.0 - friction["dynamic"]) * slow)
         name = "friction limit"
-    forces.plot(time, most, label=name, **limit)
-    forces.plot(time, -most, **limit)
+    if found.to_dict()["parameters"].get("law", {}).get("pull_off"):
+        # The limit has the pull-off twice, and not the damping.
+        forces.plot(time, most, label="normal force $F_n$", **limit)
+    else:
+        forces.plot(time, most, label=name, **limit)
+        forces.plot(time, -most, **limit)
     rows: list[tuple[Any, str, str, Any]] = [
         (forces, "tangential_force", "tangential force $F_t/\\mu$", {"color": COLOURS[0]}),
         (velocities, "velocity", "tangential velocity $w$", {"color": COLOURS[1]}),

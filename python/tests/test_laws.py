@@ -208,7 +208,7 @@ def test_hysteretic_forces() -> None:
     bodies = stickslip.Bodies(grain, grain, surface, "walton-braun")
     assert stickslip.impact(bodies, 0.1, 0.05).eps_n == pytest.approx(0.5, abs=1e-12)
     with pytest.raises(ValueError, match="adhesion is not computed"):
-        stickslip.collide(3, 0.4, law="granular/jkr")
+        stickslip.collide(3, 0.4, law="liggghts/sjkr")
 
 
 def test_decaying_friction() -> None:

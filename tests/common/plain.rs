@@ -111,6 +111,7 @@ impl Plain {
         let elastic = match self.0.law().normal {
             Normal::Linear => x,
             Normal::Hertz => x * x.sqrt(),
+            other => panic!("{other:?} is compared elsewhere"),
         };
         elastic + self.eta(x) * v
     }

@@ -2,7 +2,7 @@
 
 use stickslip_solver::InvalidValue;
 
-use crate::law::{CoulombTest, Damping, Friction, Law, Tangential};
+use crate::law::{ContactEnd, CoulombTest, Damping, Friction, Law, Normal, Tangential};
 
 /// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
 ///
@@ -62,8 +62,9 @@ impl Contact {
     /// # Errors
     /// [`InvalidValue`]: the tangential damping is out of its range, also for κ = 0 and hysteretic
     /// forces, the damping has no effect in this law, a contact with this damping never ends, the
-    /// force is hysteretic and the spring depends on the overlap, or a number of [`Friction`] is
-    /// out of its range, also for a dashpot beside Coulomb's limit.
+    /// force is hysteretic and the spring depends on the overlap, a number of [`Friction`] is out
+    /// of its range, also for a dashpot beside Coulomb's limit, or a term has no meaning beside
+    /// adhesion.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
         let Self { damping, kappa, .. } = self;
         let ok = tangential_damping >= 0.0;
@@ -98,6 +99,7 @@ impl Contact {
                 return Err(InvalidValue::phrase("the law", phrase, expected));
             }
         }
+        adhesion(&law)?;
         if kappa > 0.0 {
             return Ok(Self { tangential_damping, law, ..self });
         }
@@ -170,6 +172,38 @@ impl Contact {
     /// [`OtherLaw`] unless [`Self::obeys_paper`].
     pub fn require_paper(&self, what: &'static str) -> Result<(), OtherLaw> {
         if self.obeys_paper() { Ok(()) } else { Err(OtherLaw { what }) }
+    }
+}
+
+/// Checks the pull-off force of a law, and the terms beside it: LAMMPS combines adhesion with no
+/// others.
+fn adhesion(law: &Law) -> Result<(), InvalidValue> {
+    let Law { pull_off, damping, .. } = *law;
+    if !law.normal.is_adhesive() {
+        let expected = "0, since this law has no adhesion";
+        return in_range("pull_off", pull_off, expected, pull_off == 0.0);
+    }
+    let expected = "a finite number above 0: without pull-off the law is one of Hertz' force";
+    in_range("pull_off", pull_off, expected, pull_off > 0.0)?;
+    let beside = [
+        (
+            matches!(damping, Damping::None | Damping::Linear | Damping::Viscoelastic),
+            "and a damping that is neither linear nor viscoelastic",
+        ),
+        (!law.limit_damping, "and a force that is kept from attracting"),
+        (
+            law.normal == Normal::Jkr || law.end == ContactEnd::Overlap,
+            "and ends at a force, where DMT ends at x = 0",
+        ),
+        (law.coulomb_test == CoulombTest::Total, "and a Coulomb test of the spring alone"),
+        (law.friction.is_constant(), "and a friction that depends on the velocity"),
+    ];
+    match beside.into_iter().find(|(ok, _)| !ok) {
+        Some((_, what)) => {
+            let phrase = format!("has adhesion {what}");
+            Err(InvalidValue::phrase("the law", phrase, "terms that LAMMPS combines with adhesion"))
+        }
+        None => Ok(()),
     }
 }
 

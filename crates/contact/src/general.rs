@@ -26,14 +26,15 @@ use stickslip_solver::method::{Step, Trial};
 use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State};
 
 pub(crate) mod decay;
-mod equations;
+pub(crate) mod equations;
 mod exponents;
-mod start;
+mod system;
 
 use crate::contact::Contact;
-use crate::law::{ContactEnd, Law};
+use crate::law::{ContactEnd, Law, Normal};
 use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step};
 use equations::Equations;
+pub use system::ContactSystem;
 
 /// Number of components.
 pub const STATE: usize = 11;
@@ -123,7 +124,8 @@ pub enum Beginning {
 /// How a phase began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeProgress {
-    /// Where the limit is zero: at the start of contact, or where attraction begins.
+    /// Where the limit is zero: at the start of contact, or where attraction begins; with adhesion
+    /// the former alone.
     Touched,
     /// At the start of contact with a reset history.
     Reset,
@@ -141,8 +143,13 @@ impl Stage {
 }
 
 impl GeneralContact {
-    /// The system of one contact.
+    /// The system of one contact, whose law has no adhesion.
+    ///
+    /// # Panics
+    /// If the law has adhesion: its system is an
+    /// [`AdhesiveContact`](crate::adhesive::AdhesiveContact).
     pub fn new(contact: Contact) -> Self {
+        assert!(!contact.law().normal.is_adhesive(), "the system has no adhesion");
         let equations = Equations::new(&contact).off_the_border(contact.psi());
         let beginning = equations.beginning(contact.psi());
         Self { contact, equations, beginning, reversals: false }
@@ -179,107 +186,10 @@ impl GeneralContact {
         Equations::new(&self.contact).beginning_margins(self.contact.psi())
     }
 
-    /// The same system, with an event at every reversal of the tangential velocity.
-    pub fn with_reversals(self) -> Self {
-        Self { reversals: true, ..self }
-    }
-
-    /// The parameters of the contact.
-    pub fn contact(&self) -> Contact {
-        self.contact
-    }
-
-    /// The mode in which the contact starts.
-    pub fn first(&self) -> ContactMode {
-        let (regime, side, progress) = match self.beginning {
-            Beginning::Stick if self.equations.starts_flat() => {
-                (Regime::Stick, Side::Positive, ModeProgress::Settled)
-            }
-            Beginning::Stick => (Regime::Stick, Side::Positive, ModeProgress::Touched),
-            Beginning::Slip => (Regime::Slip, Side::Positive, ModeProgress::Touched),
-            Beginning::Reset => (Regime::Stick, Side::Positive, ModeProgress::Reset),
-            Beginning::Overturned => (Regime::Slip, Side::Negative, ModeProgress::Touched),
-        };
-        ContactMode { regime, side, stage: Stage::Main, progress, heading: Side::Positive }
-    }
-
-    /// The state at the start of contact, or soon after it.
-    pub fn start(&self) -> State<STATE> {
-        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
-            return self.equations.early(self.contact.psi(), self.equations.first_moment()).into();
-        }
-        self.equations.enter(self.first(), &self.equations.start(self.contact.psi())).into()
-    }
-
-    /// The state at a time before that of [`Self::start`].
-    pub fn state_before_start(&self, time: f64) -> State<STATE> {
-        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
-            return self.equations.early(self.contact.psi(), time.sqrt()).into();
-        }
-        self.start()
-    }
-
-    /// Reduced tangential velocity w.
-    pub fn velocity(&self, y: &State<STATE>) -> f64 {
-        self.equations.velocity(array(y))
-    }
-
-    /// Rate v of the overlap.
-    pub fn compression_rate(&self, y: &State<STATE>) -> f64 {
-        self.equations.compression_rate(array(y))
-    }
-
     /// The part of the overlap that pushes: x, but x − x₀ while a hysteretic force falls.
     pub fn compression(&self, y: &State<STATE>) -> f64 {
         // Where a contact ends, rounding may make u negative.
         y[U].max(0.0).powi(i32::from(self.equations.exponents.n))
-    }
-
-    /// Overlap x.
-    pub fn overlap(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
-        self.compression(y) + self.equations.left_over(mode.stage)
-    }
-
-    /// How long the overlap goes on after the force has ended in the state `y`: where the force is
-    /// limited, nothing pushes any more.
-    pub fn flight(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
-        match self.contact.law().end {
-            ContactEnd::Overlap => self.overlap(mode, y) / -self.compression_rate(y),
-            ContactEnd::Force => 0.0,
-        }
-    }
-
-    /// How fast time grows with s.
-    pub fn clock_rate(&self, y: &State<STATE>) -> f64 {
-        let n = i32::from(self.equations.exponents.n);
-        f64::from(n) * y[U].powi(n - 1)
-    }
-
-    /// Tangential energy that the dashpot has taken in stick.
-    pub fn taken_by_dashpot(&self, y: &State<STATE>) -> f64 {
-        self.equations.taken_by_dashpot(array(y))
-    }
-
-    /// Scaled normal force F.
-    pub fn normal_force(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
-        self.equations.normal_force(mode.stage, array(y))
-    }
-
-    /// The tangential force Q against the motion, in units of μ times the scaled normal force.
-    pub fn tangential_force(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
-        match mode.regime {
-            Regime::Slip => {
-                let limit = mode.stage.sign() * self.normal_force(mode, y);
-                mode.side.sign() * self.equations.rubbed(mode, array(y), limit)
-            }
-            Regime::Stick => self.equations.tangential_force(mode.stage, array(y)),
-        }
-    }
-
-    /// The tangential force over κ: the elongation of a spring of this stiffness. With κ = 0 the
-    /// force itself.
-    pub fn spring(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
-        self.tangential_force(mode, y) / self.contact.force_unit()
     }
 
     /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
@@ -289,12 +199,6 @@ impl GeneralContact {
         let vanishes =
             self.equations.exponents.damped && self.contact.law().end == ContactEnd::Force;
         vanishes && mode.regime == Regime::Stick && !self.equations.is_frictionless()
-    }
-
-    /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how
-    /// long that slip lasts; `None` if none [is](Self::lacks_slip).
-    pub fn last_slip(&self, mode: ContactMode, y: &State<STATE>) -> Option<(usize, f64)> {
-        self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))
     }
 
     /// Whether an attracting tail follows where the normal force vanishes.
@@ -338,6 +242,99 @@ impl GeneralContact {
     fn excess_in_tail(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
         let tail = self.after(mode, END, true);
         self.equations.guards(tail, array(y))[SAME_SIDE]
+    }
+}
+
+impl ContactSystem for GeneralContact {
+    fn with_reversals(self) -> Self {
+        Self { reversals: true, ..self }
+    }
+
+    fn contact(&self) -> Contact {
+        self.contact
+    }
+
+    fn first(&self) -> ContactMode {
+        let (regime, side, progress) = match self.beginning {
+            Beginning::Stick if self.equations.starts_flat() => {
+                (Regime::Stick, Side::Positive, ModeProgress::Settled)
+            }
+            Beginning::Stick => (Regime::Stick, Side::Positive, ModeProgress::Touched),
+            Beginning::Slip => (Regime::Slip, Side::Positive, ModeProgress::Touched),
+            Beginning::Reset => (Regime::Stick, Side::Positive, ModeProgress::Reset),
+            Beginning::Overturned => (Regime::Slip, Side::Negative, ModeProgress::Touched),
+        };
+        ContactMode { regime, side, stage: Stage::Main, progress, heading: Side::Positive }
+    }
+
+    fn start(&self) -> State<STATE> {
+        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
+            return self.equations.early(self.contact.psi(), self.equations.first_moment()).into();
+        }
+        self.equations.enter(self.first(), &self.equations.start(self.contact.psi())).into()
+    }
+
+    fn state_before_start(&self, time: f64) -> State<STATE> {
+        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
+            return self.equations.early(self.contact.psi(), time.sqrt()).into();
+        }
+        self.start()
+    }
+
+    fn velocity(&self, y: &State<STATE>) -> f64 {
+        self.equations.velocity(array(y))
+    }
+
+    fn compression_rate(&self, y: &State<STATE>) -> f64 {
+        self.equations.compression_rate(array(y))
+    }
+
+    fn overlap(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
+        self.compression(y) + self.equations.left_over(mode.stage)
+    }
+
+    fn flight(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
+        match self.contact.law().end {
+            ContactEnd::Overlap => self.overlap(mode, y) / -self.compression_rate(y),
+            ContactEnd::Force => 0.0,
+        }
+    }
+
+    fn clock_rate(&self, y: &State<STATE>) -> f64 {
+        let n = i32::from(self.equations.exponents.n);
+        f64::from(n) * y[U].powi(n - 1)
+    }
+
+    fn taken_by_dashpot(&self, y: &State<STATE>) -> f64 {
+        self.equations.taken_by_dashpot(array(y))
+    }
+
+    fn normal_force(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
+        self.equations.normal_force(mode.stage, array(y))
+    }
+
+    fn limit(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
+        let limit = mode.stage.sign() * self.normal_force(mode, y);
+        self.equations.rubbed(mode, array(y), limit)
+    }
+
+    fn tangential_force(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
+        match mode.regime {
+            Regime::Slip => mode.side.sign() * self.limit(mode, y),
+            Regime::Stick => self.equations.tangential_force(mode.stage, array(y)),
+        }
+    }
+
+    fn last_slip(&self, mode: ContactMode, y: &State<STATE>) -> Option<(usize, f64)> {
+        self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))
+    }
+
+    fn compression_energy(&self, y: &State<STATE>) -> f64 {
+        let pushed = self.compression(y);
+        match self.contact.law().normal {
+            Normal::Linear => 0.5 * pushed * pushed,
+            _ => 0.4 * pushed.powf(2.5),
+        }
     }
 }
 

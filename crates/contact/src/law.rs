@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use stickslip_solver::InvalidValue;
+
 /// The terms of a contact law. [`Law::PAPER`] is that of Schwager, Becker and Pöschel; particle
 /// codes compute others, which [`presets`](crate::presets) names.
 ///
@@ -18,7 +20,7 @@ use std::fmt;
 /// a part of |F|. The source is the text of LAMMPS (29 Sep 2021):
 /// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`. Laws without history
 /// have the dashpot alone, and in some codes Coulomb's limit holds for the spring alone:
-/// [`CoulombTest`].
+/// [`CoulombTest`]. With adhesion, [`Normal::Dmt`] and [`Normal::Jkr`], the limit is another one.
 ///
 /// ```
 /// use stickslip_contact::{Contact, Law, Tangential};
@@ -54,6 +56,16 @@ pub struct Law {
     /// How the limit depends on the tangential velocity.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Friction::is_coulomb"))]
     pub friction: Friction,
+    /// The force F_po that separates bodies with adhesion, as [`Normal`] has it; 0 without. In
+    /// scaled units it is over m g_n and times the unit of time.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_zero"))]
+    pub pull_off: f64,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// The elastic part of the normal force.
@@ -65,6 +77,24 @@ pub enum Normal {
     Linear,
     /// x^{3/2}.
     Hertz,
+    /// x^{3/2} − F_po, with the adhesion of Derjaguin, Muller and Toporov: F_po = 4πγR, where 2γ is
+    /// the work of adhesion. The contact begins and ends at x = 0.
+    ///
+    /// Here and in [`Self::Jkr`] Coulomb's limit holds for the elastic force plus twice F_po,
+    /// without damping, and r, the contact radius in scaled units, stands for √x: r = √x in DMT.
+    /// Source: LAMMPS, `gran_sub_mod_normal.cpp`; F_po + F in the sense of Thornton (1991).
+    Dmt,
+    /// r³ − (3/2) c r^{3/2}, with the adhesion of Johnson, Kendall and Roberts: x = r² − c √r,
+    /// F_po = (9/16) c² = 3πγR. The contact begins at x = 0 with the force −(8/9) F_po, and ends at
+    /// a negative overlap, where [`ContactEnd`] says.
+    Jkr,
+}
+
+impl Normal {
+    /// Whether the bodies attract each other by adhesion.
+    pub fn is_adhesive(self) -> bool {
+        matches!(self, Self::Dmt | Self::Jkr)
+    }
 }
 
 /// How the normal force loses energy: its damping η, or hysteresis.
@@ -204,9 +234,11 @@ impl Friction {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum ContactEnd {
-    /// Where the normal force would begin to attract.
+    /// Where the normal force would begin to attract; in [`Normal::Jkr`] where it attracts most,
+    /// F = −F_po and x = −(c/4) (3c/4)^{1/3}, as bodies part that are pulled with a given force.
     Force,
-    /// Where the overlap vanishes.
+    /// Where the overlap vanishes; in [`Normal::Jkr`] where it is least, x = −3 (c/4)^{4/3} and
+    /// F = −(5/9) F_po, beyond which no contact is in equilibrium.
     Overlap,
 }
 
@@ -262,6 +294,7 @@ impl Law {
         end: ContactEnd::Force,
         coulomb_test: CoulombTest::Total,
         friction: Friction::COULOMB,
+        pull_off: 0.0,
     };
 
     /// The equations in scaled units, in one line.
@@ -269,10 +302,14 @@ impl Law {
         let elastic = match self.normal {
             Normal::Linear => "x",
             Normal::Hertz => "x^(3/2)",
+            Normal::Dmt => "x^(3/2) − F_po",
+            Normal::Jkr => "r³ − 2 √F_po r^(3/2)",
         };
+        let root = if self.normal == Normal::Jkr { "r" } else { "√x" };
         let eta = match self.damping {
             Damping::None | Damping::Hysteretic | Damping::Hardening => "",
             Damping::Linear => "a",
+            Damping::Viscoelastic if self.normal == Normal::Jkr => "a r",
             Damping::Viscoelastic => "a √x",
             Damping::Tsuji => "a x^(1/4)",
         };
@@ -281,7 +318,7 @@ impl Law {
             _ if self.damping.is_hysteretic() => {
                 let falling = match self.normal {
                     Normal::Linear => "(1 + a)(x − x₀)",
-                    Normal::Hertz => "(1 + a)(x − x₀)^(3/2)",
+                    _ => "(1 + a)(x − x₀)^(3/2)",
                 };
                 format!("F = {elastic}, {falling} where v < 0")
             }
@@ -289,14 +326,18 @@ impl Law {
             (true, false) => format!("F = {elastic} + {eta} v"),
             (true, true) => format!("F = max(0, {elastic} + {eta} v)"),
         };
+        let overlap =
+            if self.normal == Normal::Jkr { "x = r² − (4/3) √(F_po r), " } else { "" };
         let stiffness = match self.tangential {
-            Tangential::Constant => "κ",
-            Tangential::Mindlin => "κ √x",
+            Tangential::Constant => "κ".to_owned(),
+            Tangential::Mindlin => format!("κ {root}"),
         };
         let tested = self.coulomb_test == CoulombTest::Total;
         let dashpot = if damped && tested { format!(" + b {eta} w") } else { String::new() };
-        let rescaled = |history| {
-            if self.rescaled { format!(" (+ {history} v/(2x) where v < 0)") } else { String::new() }
+        let rescaled = |history| match self.normal {
+            _ if !self.rescaled => String::new(),
+            Normal::Jkr => format!(" (+ {history} (dr/dt)/r where v < 0)"),
+            _ => format!(" (+ {history} v/(2x) where v < 0)"),
         };
         let tangential = match self.history {
             HistoryOf::Displacement => {
@@ -314,16 +355,21 @@ impl Law {
             String::new()
         };
         let end = match self.end {
+            ContactEnd::Force if self.normal == Normal::Jkr => "F = −F_po",
+            ContactEnd::Overlap if self.normal == Normal::Jkr => "dx/dr = 0",
             ContactEnd::Force => "F = 0",
             ContactEnd::Overlap => "x = 0",
         };
-        let limit = if self.friction.is_constant() {
+        let limit = if self.normal.is_adhesive() {
+            let dmt = self.normal == Normal::Dmt;
+            if dmt { "x^(3/2) + F_po" } else { "r³ − 2 √F_po r^(3/2) + 2 F_po" }.to_owned()
+        } else if self.friction.is_constant() {
             "|F|".to_owned()
         } else {
             let Friction { dynamic, decay } = self.friction;
             format!("({dynamic} + {} e^(−{decay} |w|)) |F|", 1.0 - dynamic)
         };
-        format!("{normal}; {tangential}; |Q| ≤ {limit}{beside}; ends at {end}")
+        format!("{overlap}{normal}; {tangential}; |Q| ≤ {limit}{beside}; ends at {end}")
     }
 
     /// The law without the spring: what becomes of the law as κ vanishes.
@@ -341,6 +387,19 @@ impl Law {
     pub(crate) fn tested_damping(self, tangential_damping: f64) -> f64 {
         let tested = self.coulomb_test == CoulombTest::Total || !self.remembers();
         if tested { tangential_damping } else { 0.0 }
+    }
+
+    /// Refuses a law with adhesion, for which `what` is not computed.
+    ///
+    /// # Errors
+    /// [`InvalidValue`]: the bodies attract each other.
+    pub fn require_no_adhesion(&self, what: &str) -> Result<(), InvalidValue> {
+        if !self.normal.is_adhesive() {
+            return Ok(());
+        }
+        let expected =
+            format!("a law without it: {what} not computed for bodies that may stay together");
+        Err(InvalidValue::phrase("the law", "has adhesion", expected))
     }
 
     /// What becomes of the energy in the tangential spring while it sticks.

@@ -8,12 +8,14 @@
 //!
 //! Start reading in [`Contact`]; then, in this order: `law` (a contact law as data), `contact`
 //! (parameters), [`phase`] (what all laws have in common), [`presets`] (the laws of particle
-//! codes), [`regularized`] and [`general`] (the equations of the paper's law and of any law as
-//! hybrid systems), `result` (what every engine returns), [`domain`] (ranges of engines),
-//! [`numerics`] (numbers with twice the digits, roots in a bracket).
+//! codes), [`regularized`], [`general`] and [`adhesive`] (the equations of the paper's law, of any
+//! law, and of laws with adhesion as hybrid systems), `start` (how near a contact is to starting
+//! otherwise), `result` (what every engine returns), [`domain`] (ranges of engines), [`numerics`]
+//! (numbers with twice the digits, roots in a bracket).
 //!
 //! With the feature `serde`, results serialise themselves.
 
+pub mod adhesive;
 mod contact;
 pub mod domain;
 pub mod general;
@@ -25,6 +27,7 @@ pub mod regularized;
 mod result;
 #[cfg(feature = "serde")]
 mod serialize;
+mod start;
 
 pub use contact::{Contact, OtherLaw};
 pub use law::{

@@ -34,13 +34,13 @@ pub struct Preset {
 /// What may be added to a name: a normal force that does not attract.
 const LIMITED: &str = "+limit_damping";
 
-/// The preset with a name of [`ALL`], to which `+limit_damping` may be added.
+/// The preset with a name of [`ALL`] or [`ADHESIVE`], to which `+limit_damping` may be added.
 pub fn find(name: &str) -> Option<Preset> {
     let (base, limited) = match name.strip_suffix(LIMITED) {
         Some(base) => (base, true),
         None => (name, false),
     };
-    let mut preset = *ALL.iter().find(|preset| preset.name == base)?;
+    let mut preset = *ALL.iter().chain(ADHESIVE).find(|preset| preset.name == base)?;
     preset.law.limit_damping |= limited;
     Some(preset)
 }
@@ -50,12 +50,12 @@ pub fn find(name: &str) -> Option<Preset> {
 /// ```
 /// use stickslip_contact::presets;
 ///
-/// assert!(presets::refusal("granular/jkr").is_some_and(|why| why.starts_with("adhesion")));
+/// assert!(presets::refusal("liggghts/sjkr").is_some_and(|why| why.starts_with("this adhesion")));
 /// assert_eq!(presets::refusal("gran/hooke/history"), None);
 /// ```
 pub fn refusal(name: &str) -> Option<&'static str> {
-    const ADHESION: &str = "adhesion is not computed: with it a contact begins and ends at pull-off, \
-                            with a force that jumps, and slow bodies never separate";
+    const ADHESION: &str = "this adhesion is not computed, but those of LAMMPS are: granular/dmt/… and \
+                            granular/jkr/…, which `stickslip laws` lists";
     const ROLLING: &str = "rolling and twisting friction are not computed: they are torques. Twisting \
                            changes the spin about the normal alone; rolling between equal spheres \
                            changes the difference of their spins and not ε_t, and on a wall the spin \
@@ -63,7 +63,8 @@ pub fn refusal(name: &str) -> Option<&'static str> {
     const THORNTON: &str = "Thornton's elastic-plastic force is not computed: it is Hertz' up to a \
                             yield velocity and linear above; walton-braun and \
                             walton-braun/hardening are hysteretic forces that are computed";
-    const KNOWN: [(&str, &str); 13] = [
+    const KNOWN: [(&str, &str); 14] = [
+        ("sjkr", ADHESION),
         ("jkr", ADHESION),
         ("dmt", ADHESION),
         ("adhesi", ADHESION),
@@ -97,7 +98,7 @@ pub fn near(name: &str) -> Vec<&'static str> {
     let base = name.strip_suffix(LIMITED).unwrap_or(name).to_lowercase();
     let wanted = pairs(&base);
     let mut found: Vec<(f64, &str)> = Vec::new();
-    for preset in ALL {
+    for preset in ALL.iter().chain(ADHESIVE) {
         let known = preset.name.to_lowercase();
         let mut rest = pairs(&known);
         let total = wanted.len() + rest.len();
@@ -173,6 +174,12 @@ const fn nohistory(name: &'static str, law: Law) -> Preset {
     }
 }
 
+/// A law of LAMMPS with adhesion.
+const fn adhesive(name: &'static str, law: Law) -> Preset {
+    let end = if matches!(law.normal, Jkr) { ContactEnd::Force } else { ContactEnd::Overlap };
+    Preset { source: ADHESION, checked: ADHESION_CHECKED, ..lammps(name, Law { end, ..law }) }
+}
+
 /// A law of LAMMPS that none of the compared collisions has.
 const fn unchecked(name: &'static str, law: Law) -> Preset {
     Preset { checked: "read in the source; no collision of LAMMPS compared", ..lammps(name, law) }
@@ -189,6 +196,10 @@ const fn read_in(
     Preset { name, code, law, tangential_damping, source, checked }
 }
 
+const ADHESION: &str = "LAMMPS 22 Jul 2025, Update 4, and commit 07b704c: gran_sub_mod_normal.cpp, \
+                        gran_sub_mod_damping.cpp, gran_sub_mod_tangential.cpp";
+const ADHESION_CHECKED: &str = "runs of LAMMPS 22 Jul 2025: tests/data/lammps_adhesion.json; an \
+                                independent integration: tests/data/adhesive_contacts.py";
 const NOHISTORY_CHECKED: &str = "runs of LAMMPS 22 Jul 2025: tests/data/lammps_2025.json";
 const LIGGGHTS: &str = "LIGGGHTS-PUBLIC 3.8.0 (commit 3d5c00f): normal_model_hertz.h, \
                         normal_model_hooke.h, tangential_model_history.h";
@@ -229,10 +240,93 @@ const YADE_UNDAMPED: &str = "read in the source, with the integrator's own dampi
 
 use Damping::{Hardening, Hysteretic, Linear as Constant, None as Undamped, Tsuji, Viscoelastic};
 use HistoryOf::{Displacement, Force};
-use Normal::{Hertz, Linear};
+use Normal::{Dmt, Hertz, Jkr, Linear};
 use Tangential::{Constant as Spring, Mindlin};
 
-/// All laws that have a name. The first is the paper's.
+/// The laws with adhesion that have a name. They are a list of their own, since each becomes the
+/// law of a contact by a [pull-off force](Law::pull_off) alone.
+pub const ADHESIVE: &[Preset] = &[
+    adhesive("granular/dmt/mass_velocity/linear_nohistory", dashpots(Dmt, Constant)),
+    adhesive(
+        "granular/dmt/mass_velocity/linear_history",
+        law(Dmt, Constant, Spring, Displacement, false),
+    ),
+    adhesive(
+        "granular/dmt/mass_velocity/mindlin",
+        law(Dmt, Constant, Mindlin, Displacement, false),
+    ),
+    adhesive("granular/dmt/mass_velocity/mindlin/force", law(Dmt, Constant, Mindlin, Force, false)),
+    adhesive(
+        "granular/dmt/mass_velocity/mindlin_rescale",
+        law(Dmt, Constant, Mindlin, Displacement, true),
+    ),
+    adhesive(
+        "granular/dmt/mass_velocity/mindlin_rescale/force",
+        law(Dmt, Constant, Mindlin, Force, true),
+    ),
+    adhesive("granular/dmt/viscoelastic/linear_nohistory", dashpots(Dmt, Viscoelastic)),
+    adhesive(
+        "granular/dmt/viscoelastic/linear_history",
+        law(Dmt, Viscoelastic, Spring, Displacement, false),
+    ),
+    adhesive(
+        "granular/dmt/viscoelastic/mindlin",
+        law(Dmt, Viscoelastic, Mindlin, Displacement, false),
+    ),
+    adhesive(
+        "granular/dmt/viscoelastic/mindlin/force",
+        law(Dmt, Viscoelastic, Mindlin, Force, false),
+    ),
+    adhesive(
+        "granular/dmt/viscoelastic/mindlin_rescale",
+        law(Dmt, Viscoelastic, Mindlin, Displacement, true),
+    ),
+    adhesive(
+        "granular/dmt/viscoelastic/mindlin_rescale/force",
+        law(Dmt, Viscoelastic, Mindlin, Force, true),
+    ),
+    adhesive("granular/jkr/mass_velocity/linear_nohistory", dashpots(Jkr, Constant)),
+    adhesive(
+        "granular/jkr/mass_velocity/linear_history",
+        law(Jkr, Constant, Spring, Displacement, false),
+    ),
+    adhesive(
+        "granular/jkr/mass_velocity/mindlin",
+        law(Jkr, Constant, Mindlin, Displacement, false),
+    ),
+    adhesive("granular/jkr/mass_velocity/mindlin/force", law(Jkr, Constant, Mindlin, Force, false)),
+    adhesive(
+        "granular/jkr/mass_velocity/mindlin_rescale",
+        law(Jkr, Constant, Mindlin, Displacement, true),
+    ),
+    adhesive(
+        "granular/jkr/mass_velocity/mindlin_rescale/force",
+        law(Jkr, Constant, Mindlin, Force, true),
+    ),
+    adhesive("granular/jkr/viscoelastic/linear_nohistory", dashpots(Jkr, Viscoelastic)),
+    adhesive(
+        "granular/jkr/viscoelastic/linear_history",
+        law(Jkr, Viscoelastic, Spring, Displacement, false),
+    ),
+    adhesive(
+        "granular/jkr/viscoelastic/mindlin",
+        law(Jkr, Viscoelastic, Mindlin, Displacement, false),
+    ),
+    adhesive(
+        "granular/jkr/viscoelastic/mindlin/force",
+        law(Jkr, Viscoelastic, Mindlin, Force, false),
+    ),
+    adhesive(
+        "granular/jkr/viscoelastic/mindlin_rescale",
+        law(Jkr, Viscoelastic, Mindlin, Displacement, true),
+    ),
+    adhesive(
+        "granular/jkr/viscoelastic/mindlin_rescale/force",
+        law(Jkr, Viscoelastic, Mindlin, Force, true),
+    ),
+];
+
+/// All laws without adhesion that have a name. The first is the paper's.
 pub const ALL: &[Preset] = &[
     Preset {
         name: "paper",

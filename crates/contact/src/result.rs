@@ -14,6 +14,11 @@ pub use energy::EnergyLedger;
 pub struct Collision {
     /// The collision's parameters.
     pub contact: Contact,
+    /// Whether the bodies stay together for ever, held by adhesion. Then there is no restitution,
+    /// [`Self::eps_n`] and [`Self::eps_t`] are NaN, and all else is up to where that is certain:
+    /// the energy of the normal motion only falls, and there it is that of bodies at rest where
+    /// they would separate.
+    pub adheres: bool,
     /// Coefficient of normal restitution ε_n = −ẋ(t_c)/ẋ(0).
     pub eps_n: f64,
     /// Reduced tangential velocity w at the end of contact; ε_t = w/ψ.
@@ -65,6 +70,7 @@ impl Collision {
     pub fn before(contact: Contact) -> Self {
         Self {
             contact,
+            adheres: false,
             eps_n: f64::NAN,
             final_velocity: f64::NAN,
             contact_time: f64::NAN,
@@ -79,6 +85,7 @@ impl Collision {
     /// Makes this [`Collision::before`] of `contact`, and keeps its memory.
     pub fn reset(&mut self, contact: Contact) {
         self.contact = contact;
+        self.adheres = false;
         (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
         self.start = Phase::first(&contact).regime;
         self.start_side = Side::Positive;
@@ -89,7 +96,7 @@ impl Collision {
 
     /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0); −1 is full reversal.
     pub fn eps_t(&self) -> f64 {
-        self.final_velocity / self.contact.psi()
+        if self.adheres { f64::NAN } else { self.final_velocity / self.contact.psi() }
     }
 
     /// One character for each phase: `+` and `-` for slip on side +1 and −1, `o` for stick.
@@ -118,15 +125,16 @@ impl Collision {
         self.switches.iter().map(guard).collect()
     }
 
-    /// Checks that all results but the energies are finite numbers; see
-    /// [`EnergyLedger::require_finite`] for those.
+    /// Checks that all results but the energies are finite numbers, but for restitutions of bodies
+    /// that stick; see [`EnergyLedger::require_finite`] for energies.
     ///
     /// # Errors
     /// [`NotFinite`] names the first that is not.
     pub fn require_finite(&self) -> Result<(), NotFinite> {
+        let [eps_n, eps_t] = if self.adheres { [0.0; 2] } else { [self.eps_n, self.eps_t()] };
         let results = [
-            ("eps_n", self.eps_n),
-            ("eps_t", self.eps_t()),
+            ("eps_n", eps_n),
+            ("eps_t", eps_t),
             ("w_final", self.final_velocity),
             ("contact_time", self.contact_time),
         ];

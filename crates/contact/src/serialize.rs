@@ -20,8 +20,14 @@ impl Serialize for Side {
 /// The contact as `parameters`, and the results, computed ones included.
 impl Serialize for Collision {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Collision", 12)?;
+        let mut object = serializer.serialize_struct("Collision", 13)?;
         object.serialize_field("parameters", &self.contact)?;
+        // Restitutions of bodies that stay together are null.
+        if self.adheres {
+            object.serialize_field("adheres", &true)?;
+        } else {
+            object.skip_field("adheres")?;
+        }
         object.serialize_field("eps_n", &self.eps_n)?;
         object.serialize_field("eps_t", &self.eps_t())?;
         object.serialize_field("w_final", &self.final_velocity)?;

@@ -58,7 +58,7 @@ pub use stickslip_contact::domain::OutOfDomain;
 pub use stickslip_contact::{
     Collision, Contact, ContactEnd, CoulombTest, Damping, EnergyLedger, FEW_SWITCHES, Friction,
     GivenValue, HistoryOf, InvalidValue, Law, Normal, NotFinite, OtherLaw, Regime, Side,
-    SpringEnergy, Switch, Switches, Tangential, general, presets, regularized,
+    SpringEnergy, Switch, Switches, Tangential, adhesive, general, presets, regularized,
 };
 #[doc(inline)]
 pub use stickslip_exact::{exact, linear};

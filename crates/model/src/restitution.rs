@@ -46,7 +46,7 @@ fn attracts(law: Law) -> bool {
 fn hysteretic_power(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => -0.5,
-        Normal::Hertz => -1.0 / 3.0,
+        _ => -1.0 / 3.0,
     }
 }
 
@@ -64,8 +64,10 @@ fn hysteretic_power(law: Law) -> f64 {
 /// ```
 ///
 /// # Errors
-/// [`CollisionError`]: the damping is out of its range, or the contact cannot be computed.
+/// [`CollisionError`]: the damping is out of its range, the law has adhesion, or the contact cannot
+/// be computed.
 pub fn eps_n(law: Law, damping: f64) -> Result<f64, CollisionError> {
+    law.require_no_adhesion("e_n of a damping is")?;
     // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
     // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(law, 0.0)?;
@@ -122,11 +124,12 @@ fn unreachable(wanted: f64, least: f64) -> CollisionError {
 /// ```
 ///
 /// # Errors
-/// [`CollisionError`]: ε_n is out of its range, or no damping of this law has it, or a contact
-/// cannot be computed.
+/// [`CollisionError`]: ε_n is out of its range, or no damping of this law has it, or the law has
+/// adhesion, or a contact cannot be computed.
 pub fn damping(law: Law, wanted: f64) -> Result<f64, CollisionError> {
     /// The largest damping that is tried.
     const MOST: f64 = 128.0;
+    law.require_no_adhesion("the damping of an e_n is")?;
     let ok = wanted > 0.0 && wanted <= 1.0;
     InvalidValue::check("e_n", wanted, "a number above 0, at most 1", ok)?;
     if wanted == 1.0 {

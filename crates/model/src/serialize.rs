@@ -97,9 +97,15 @@ impl Serialize for ImpactReport {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let outcome = &self.outcome;
         let spheres: Vec<_> = self.spheres().iter().map(MotionAfter).collect();
-        let mut object = serializer.serialize_struct("ImpactReport", 14)?;
+        let mut object = serializer.serialize_struct("ImpactReport", 15)?;
         object.serialize_field("parameters", &ScaledParameters(self))?;
         object.serialize_field("contact", &self.encounter)?;
+        // What bodies that stay together do not have is null.
+        if outcome.adheres {
+            object.serialize_field("adheres", &true)?;
+        } else {
+            object.skip_field("adheres")?;
+        }
         object.serialize_field("eps_n", &outcome.eps_n)?;
         object.serialize_field("eps_t", &outcome.eps_t)?;
         object.serialize_field("contact_time_s", &outcome.contact_time_s)?;
@@ -130,15 +136,15 @@ impl Serialize for ScaledParameters<'_> {
         object.serialize_field("alpha", &pair.alpha)?;
         object.serialize_field("effective_mass_kg", &pair.effective_mass_kg)?;
         object.serialize_field("effective_radius_m", &pair.effective_radius_m)?;
-        if pair.law.normal == Normal::Hertz {
-            object.serialize_field("elastic_constant_n_per_m1_5", &pair.elastic_constant)?;
-        } else {
+        if pair.law.normal == Normal::Linear {
             object.serialize_field("elastic_constant_n_per_m", &pair.elastic_constant)?;
+        } else {
+            object.serialize_field("elastic_constant_n_per_m1_5", &pair.elastic_constant)?;
         }
         if pair.law != Law::PAPER {
             object.serialize_field("tangential_damping", &contact.tangential_damping())?;
-            let friction = contact.law().friction;
-            object.serialize_field("law", &Law { friction, ..pair.law })?;
+            let Law { friction, pull_off, .. } = contact.law();
+            object.serialize_field("law", &Law { friction, pull_off, ..pair.law })?;
         }
         object.serialize_field("time_unit_s", &impact.time_unit_s)?;
         object.serialize_field("length_unit_m", &impact.length_unit_m())?;

@@ -52,6 +52,9 @@ pub struct CollisionPlane {
     first: Contact,
 }
 
+/// What is computed of a plane, where a law with adhesion is refused.
+const BOUNDARIES: &str = "boundaries are";
+
 /// What the two parameters of a plane are.
 #[derive(Clone, Copy, Debug)]
 enum Parameters {
@@ -112,6 +115,7 @@ impl CollisionPlane {
         psi: (f64, f64),
     ) -> Result<Self, InvalidValue> {
         let BodyPair { law, .. } = oblique.pair;
+        law.require_no_adhesion(BOUNDARIES)?;
         let damping = oblique.pair.tangential_damping();
         let plane = Self::new(kappa, psi, oblique.at(1.0, psi.0)?.damping())?;
         let parameters = Parameters::Oblique(oblique);
@@ -137,8 +141,10 @@ impl CollisionPlane {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidValue`]: a velocity is not above 0, or a value that no collision can have.
+    /// [`InvalidValue`]: a velocity is not above 0, a value that no collision can have, or a law
+    /// with adhesion.
     pub fn velocities(pair: BodyPair, sides: [Range; 2]) -> Result<Self, InvalidValue> {
+        pair.law.require_no_adhesion(BOUNDARIES)?;
         let [normal, tangential] = sides;
         let first = pair.impact(normal.low, tangential.low)?.contact;
         let chart = Chart::of_velocities(normal, tangential);
@@ -156,8 +162,9 @@ impl CollisionPlane {
     /// The same collisions with another law.
     ///
     /// # Errors
-    /// [`InvalidValue`]: no collision has this law with the dampings.
+    /// [`InvalidValue`]: no collision has this law with the dampings, or it has adhesion.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
+        law.require_no_adhesion(BOUNDARIES)?;
         let first = self.first.with_law(law, tangential_damping)?;
         let sheet = Sheet { integrated: !first.obeys_paper(), ..self.sheet };
         Ok(Self { sheet, first, ..self })
@@ -306,7 +313,7 @@ impl CollisionPlane {
         }
         let (loading, power) = match law.normal {
             Normal::Linear => (1.0, 1.0),
-            Normal::Hertz => (1.5 * 1.25_f64.powf(0.2), 2.0 / 3.0),
+            _ => (1.5 * 1.25_f64.powf(0.2), 2.0 / 3.0),
         };
         let (least, most) =
             (loading / (1.0 + BEYOND), loading * (1.0 + damping).powf(power) * (1.0 + BEYOND));

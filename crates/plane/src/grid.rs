@@ -135,8 +135,9 @@ impl Grid {
     /// The collision at the centre of a cell.
     ///
     /// # Errors
-    /// [`InvalidValue`]: no collision has the parameters of this cell.
+    /// [`InvalidValue`]: no collision has the parameters of this cell, or the law has adhesion.
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidValue> {
+        self.law.require_no_adhesion("maps are")?;
         let [kappa, psi, damping] = self.parameters(column, row)?;
         let contact = Contact::new(kappa, psi, damping)?;
         let mut law = self.law;

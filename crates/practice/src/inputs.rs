@@ -81,6 +81,7 @@ pub fn lines(code: Code, pair: &BodyPair) -> Text {
     let text = match code {
         _ if pair.law.damping.is_hysteretic() => Err(hysteretic(code).to_owned()),
         _ if !pair.law.friction.is_constant() => Err(DECAYING.to_owned()),
+        _ if pair.law.normal.is_adhesive() => Err(ADHESIVE.to_owned()),
         Code::Lammps => constants.lammps(),
         Code::Liggghts => constants.liggghts(),
         Code::Yade => constants.yade(),
@@ -107,6 +108,9 @@ fn hysteretic(code: Code) -> &'static str {
 /// Why the inputs of no code are written with a friction that decays.
 const DECAYING: &str =
     "its friction decays with the velocity; expected one coefficient of friction";
+
+/// Why the inputs of no code are written with adhesion.
+const ADHESIVE: &str = "inputs with adhesion are not written; expected a law without it";
 
 /// The constants of a pair as codes have them.
 struct Constants {

@@ -63,7 +63,8 @@ pub fn laws() -> PyResult<String> {
         entry["equations"] = preset.law.equations().into();
         Ok(entry)
     };
-    let entries: serde_json::Result<Vec<Value>> = presets::ALL.iter().map(entry).collect();
+    let entries: serde_json::Result<Vec<Value>> =
+        presets::ALL.iter().chain(presets::ADHESIVE).map(entry).collect();
     Ok(Value::from(entries.map_err(failed)?).to_string())
 }
 

@@ -122,6 +122,12 @@ impl BodyPair {
         self.reduced.tangential_damping()
     }
 
+    /// The scaled force that separates the bodies, at a normal velocity in m/s.
+    fn pull_off(&self, normal_m_per_s: f64) -> PyResult<f64> {
+        let impact = self.reduced.impact(normal_m_per_s, normal_m_per_s).map_err(bad_input)?;
+        Ok(impact.contact.law().pull_off)
+    }
+
     /// κ, ψ, damping and the unit of time in s for each pair of velocities in m/s.
     fn contacts<'py>(
         &self,

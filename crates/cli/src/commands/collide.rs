@@ -243,7 +243,8 @@ Batch files:
   The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping, e_n,
   tangential_damping;  the options of the same names give what the file does not. Other columns pass through. OUT.csv
   has the columns of the input followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
-  cannot be computed has no results; its status says why, and the exit code is 1.
+  cannot be computed has no results; its status says why, and the exit code is 1. Bodies that stay together by
+  adhesion have no restitution, and the status adheres.
 
 Course:
   FILE.csv of --course has the columns time, regime, side, switch, compression, normal_velocity,
@@ -263,6 +264,7 @@ Examples:
   stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method dop853 --verbose
   stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
   stickslip collide --kappa 18 --psi 1 --e-n 0.9 --law gran/hertz/history
+  stickslip collide --kappa 18 --psi 1 --law granular/jkr/viscoelastic/mindlin --pull-off 0.2
   stickslip collide --kappa 18 --psi 1.99 --estimate
   stickslip collide --batch IN.csv --out OUT.csv --events EV.csv --threads 4
   stickslip collide --batch PSI.csv --kappa 18 > OUT.csv

@@ -332,6 +332,10 @@ Other laws have other constants in \"surface\", beside \"friction\":
   hardening              hardening_per_m, (k2/k1 - 1)/(greatest overlap)
   tangential damping     tangential_damping_ratio, without unit [default: 0]
   decaying friction      dynamic_friction, at most friction, and friction_decay_s_per_m
+  adhesion (dmt, jkr)    surface_energy_j_per_m2, half the work of adhesion
+
+Bodies with adhesion may stay together: then there is no restitution, nothing is known of their motion
+  afterwards, and their status in a batch is \"adheres\".
 
 Velocities: --normal and --tangential, or --speed and --angle, are those of the surfaces of bodies
   without spin. The second body rests, and the first one falls along −z and moves along x. The

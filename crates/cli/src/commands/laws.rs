@@ -91,7 +91,8 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
         (None, Format::Json) => {
             let entry =
                 |preset: &'static Preset| Entry { equations: preset.law.equations(), preset };
-            let entries: Vec<Entry<'_>> = presets::ALL.iter().map(entry).collect();
+            let all = presets::ALL.iter().chain(presets::ADHESIVE);
+            let entries: Vec<Entry<'_>> = all.map(entry).collect();
             json::lines(out, &entries)
         }
         (None, Format::Table) => all(out),
@@ -196,6 +197,10 @@ fn all(out: &mut dyn Write) -> io::Result<()> {
         }
         writeln!(out, "  {:<46} {}", preset.name, preset.law.equations())?;
     }
+    writeln!(out, "\nLAMMPS, with adhesion: with --pull-off, or the surface energy of bodies")?;
+    for preset in presets::ADHESIVE {
+        writeln!(out, "  {:<48} {}", preset.name, preset.law.equations())?;
+    }
     writeln!(out, "\n+limit_damping may be added to a name. `stickslip laws NAME` says more.")
 }
 
@@ -204,15 +209,16 @@ const ABOUT: &str = "\
 List the contact laws that have names, or print one of them: those of particle codes, by the codes' \
 own keywords, with their equations, where these were read, and what was compared.
 
-A law consists of eight terms, in JSON and here: normal (linear, hertz), damping (none, linear, \
+A law consists of eight terms, in JSON and here: normal (linear, hertz, dmt, jkr), damping (none, linear, \
 viscoelastic, tsuji, hysteretic, hardening), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
 limit_damping (true, false), end (force, overlap), coulomb_test (total, spring). Every combination \
 is a law, but a hysteretic force goes with a spring of constant stiffness only. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
 holds for the spring alone, the dashpot acts in stick only.
 
 Quantities are scaled: x overlap, v its rate, w tangential velocity, F normal and Q tangential force, \
-y or q history; κ stiffness, a damping, b tangential damping. Adhesive laws, and torques of rolling \
-and twisting, are not computed.
+y or q history; κ stiffness, a damping, b tangential damping. With adhesion, dmt and jkr, F_po is the force \
+that separates the bodies (pull_off in JSON), and r the contact radius. Torques of rolling and twisting are not \
+computed.
 
 With --out, maps of ε_t and the number of switches, the difference from the paper's law, the forces of a \
 standard impact, and where a law creates energy, for all of them on one page.";

@@ -8,6 +8,10 @@ use stickslip_solver::Statistics;
 /// The number of digits that are shown. `--format json` shows all of them.
 const DIGITS: usize = 10;
 
+/// What is said of bodies that stay together.
+pub const ADHERES: &str = "The bodies stay together, held by adhesion: there is no restitution, and \
+                           the following is up to where that is certain.";
+
 /// Writes `collision` as tables.
 pub fn write(
     out: &mut dyn Write,
@@ -34,13 +38,21 @@ pub fn write(
         aligned(out, &std::iter::once(header.map(str::to_owned)).chain(rows).collect::<Vec<_>>())?;
     }
     writeln!(out)?;
+    let [end, time] = if collision.adheres {
+        writeln!(out, "{ADHERES}\n")?;
+        ["velocity w there", "time until then"]
+    } else {
+        ["velocity w at the end", "contact time"]
+    };
+    let restitution =
+        |value: f64| if collision.adheres { "none".to_owned() } else { number(value) };
     pairs(
         out,
         &[
-            ("normal restitution ε_n", number(collision.eps_n)),
-            ("tangential restitution ε_t", number(collision.eps_t())),
-            ("velocity w at the end", number(collision.final_velocity)),
-            ("contact time", number(collision.contact_time)),
+            ("normal restitution ε_n", restitution(collision.eps_n)),
+            ("tangential restitution ε_t", restitution(collision.eps_t())),
+            (end, number(collision.final_velocity)),
+            (time, number(collision.contact_time)),
             ("switches", collision.switches.len().to_string()),
             ("reversals of the motion", collision.reversals.to_string()),
             ("itinerary", explained(&collision.itinerary())),

@@ -33,20 +33,42 @@ pub struct LawArguments {
     #[arg(requires = "dynamic_friction")]
     #[arg(value_parser = |text: &str| part_of_friction(text, |decay| (0.5, decay)))]
     pub friction_decay: Option<f64>,
+
+    /// Scaled force F_po/(m g_n) · time that separates the bodies, with the law of granular/dmt or
+    /// granular/jkr; above 0
+    #[arg(long, value_name = "F", help_heading = "Contact law", allow_hyphen_values = true)]
+    #[arg(value_parser = pull_off)]
+    pub pull_off: Option<f64>,
 }
 
 impl LawArguments {
     /// The law that the options choose, a name or otherwise a file, and the tangential damping.
     pub fn chosen(&self) -> Result<(Law, f64), Failure> {
-        let Self { law: name, tangential_damping, dynamic_friction, friction_decay } = self;
+        let Self { law: name, tangential_damping, dynamic_friction, friction_decay, pull_off } =
+            self;
         let damping = tangential_damping.unwrap_or(0.0);
         law::permits(name.as_deref(), "--tangential-damping", damping)?;
         let mut law = law::by_name_or_file(name.as_deref())?;
         if let (Some(dynamic), Some(decay)) = (*dynamic_friction, *friction_decay) {
             law.friction = Friction { dynamic, decay };
         }
+        if let Some(force) = *pull_off {
+            if !law.normal.is_adhesive() {
+                let message = "--pull-off has no meaning in a law without adhesion; expected one of \
+                               granular/dmt or granular/jkr";
+                return Err(Failure::Usage(message.to_owned()));
+            }
+            law.pull_off = force;
+        }
         Ok((law, damping))
     }
+}
+
+/// A pull-off force.
+fn pull_off(text: &str) -> Result<f64, String> {
+    let value = number::parse_option(text)?;
+    let ok = value > 0.0 && value.is_finite();
+    if ok { Ok(value) } else { Err("out of range; expected a finite number above 0".to_owned()) }
 }
 
 /// A number of a [`Friction`], which `with` completes.

@@ -30,5 +30,7 @@ pub fn run(
 
 /// The failure of settings that are out of range. The settings have the names of the options.
 pub fn refused(invalid: impl Display) -> Failure {
-    Failure::Usage(format!("--{invalid}"))
+    let text = invalid.to_string();
+    // What is no option is a thing: the law.
+    Failure::Usage(if text.starts_with("the ") { text } else { format!("--{text}") })
 }

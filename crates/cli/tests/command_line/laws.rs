@@ -219,12 +219,83 @@ fn no_friction_and_no_spring_are_limits() {
     }
 }
 
+/// Adhesion: an option, a file of a law, bodies, and bodies that stay together.
+#[test]
+fn adhesion_is_computed_where_bodies_may_stay_together() {
+    let law = "--law granular/jkr/viscoelastic/mindlin";
+    let json = |command: &str| -> Value {
+        let ran = stickslip(&format!("{command} --format json"));
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        serde_json::from_str(&ran.stdout).unwrap()
+    };
+    let found = json(&format!("collide --kappa 18 --psi 0.6 {law} --pull-off 0.2"));
+    let work = 0.122_791 * (16.0 * 0.2 / 9.0_f64).powf(5.0 / 3.0);
+    let eps_n = found["eps_n"].as_f64().unwrap();
+    assert!((eps_n - (1.0 - 2.0 * work).sqrt()).abs() < 1e-5, "{found}");
+    assert_eq!(found["parameters"]["law"]["pull_off"], 0.2);
+    assert!(found.get("adheres").is_none());
+    let held = format!("collide --kappa 18 --psi 0.6 {law} --pull-off 5");
+    let found = json(&held);
+    assert_eq!((&found["adheres"], &found["eps_n"]), (&json!(true), &Value::Null));
+    let shown = stickslip(&held);
+    assert!(shown.stdout.contains("The bodies stay together"), "{}", shown.stdout);
+
+    let directory = Workspace::new();
+    let printed = stickslip("laws granular/jkr/viscoelastic/mindlin --format json").stdout;
+    let mut law: Value = serde_json::from_str(&printed).unwrap();
+    (law["pull_off"], law["end"]) = (json!(0.2), json!("overlap"));
+    directory.write("law.json", &law.to_string());
+    directory.write("in.csv", "kappa,psi,damping\n18,0.6,0\n18,0.6,2\n");
+    let ran = directory.run("collide --batch in.csv --law law.json");
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let rows = rows(&ran.stdout);
+    let usual = 0.248_62 * (16.0 * 0.2 / 9.0_f64).powf(5.0 / 3.0);
+    let eps_n: f64 = rows[1][3].parse().unwrap();
+    assert!((eps_n - (1.0 - 2.0 * usual).sqrt()).abs() < 1e-5, "{}", ran.stdout);
+    assert_eq!((rows[2][3].as_str(), rows[2][9].as_str()), ("", "adheres"), "{}", ran.stdout);
+
+    let bodies = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/adhesive_spheres.json");
+    let name = "--law granular/jkr/viscoelastic/mindlin";
+    let impact = json(&format!("impact {bodies} {name}"));
+    assert!(impact["eps_n"].as_f64().unwrap() < 1.0, "{impact}");
+    let slow = format!("impact {bodies} {name} --normal 1e-3 --tangential 1e-3");
+    let found = json(&slow);
+    assert_eq!((&found["adheres"], &found["impulse_n_s"][0]), (&json!(true), &Value::Null));
+    assert!(stickslip(&slow).stdout.contains("The bodies stay together"));
+    directory.write("slow.csv", "normal_m_per_s,tangential_m_per_s\n0.1,0.1\n0.001,0.001\n");
+    let ran = directory.run(&format!("impact --batch slow.csv --bodies {bodies} {name}"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(ran.stdout.lines().nth(1).unwrap().ends_with(",ok"), "{}", ran.stdout);
+    assert!(ran.stdout.lines().nth(2).unwrap().ends_with(",,,adheres"), "{}", ran.stdout);
+
+    let scaled = "--law granular/dmt/viscoelastic/mindlin --pull-off 0.1";
+    for (command, why) in [
+        (format!("collide --kappa 3 --psi 1 {name}"), "without pull-off"),
+        ("collide --kappa 3 --psi 1 --pull-off 0.1".to_owned(), "without adhesion"),
+        (format!("collide --kappa 3 --psi 1 {name} --pull-off 0"), "above 0"),
+        (format!("map --kappa 1:2 --psi 0.5:1 --size 4x4 --out map.csv {scaled}"), "maps are"),
+        (format!("trace --kappa 1:2 --psi 0.5:1 --out atlas.json {scaled}"), "boundaries are"),
+        (format!("timestep --kappa 1:2 --psi 0.5:1 {scaled}"), "time steps are"),
+        (format!("collide --kappa 3 --psi 1 --e-n 0.8 {scaled}"), "the damping of an e_n is"),
+        ("laws granular/dmt/viscoelastic/mindlin --e-n 0.8".to_owned(), "has adhesion"),
+    ] {
+        let refused = directory.run(&command);
+        assert_eq!(refused.code, 2, "{command}: {}", refused.stderr);
+        assert!(refused.stderr.contains(why), "{command}: {}", refused.stderr);
+    }
+    let plotted = directory.run(&format!("{held} --plot held.svg"));
+    assert!(plotted.code == 1 && plotted.stderr.contains("stay together"), "{}", plotted.stderr);
+    let plotted = directory.run(&format!("collide --kappa 18 --psi 0.6 {scaled} --plot ends.svg"));
+    assert_eq!(plotted.code, 0, "{}", plotted.stderr);
+    assert!(directory.read("ends.svg").contains("friction limit/μ"));
+}
+
 /// Laws that are not computed say so by their names.
 #[test]
 fn laws_that_are_not_computed_say_why() {
     for (name, why) in [
-        ("granular/jkr", "adhesion is not computed"),
-        ("dmt", "adhesion is not computed"),
+        ("sjkr", "this adhesion is not computed"),
+        ("cohesion", "this adhesion is not computed"),
         ("rolling/sds", "rolling and twisting friction are not computed"),
         ("thornton", "Thornton's elastic-plastic force is not computed"),
     ] {

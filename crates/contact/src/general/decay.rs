@@ -45,10 +45,10 @@ impl Decay {
 
 /// A quantity and its first two derivatives with respect to s.
 #[derive(Clone, Copy)]
-pub(super) struct Jet<T>(pub T, pub T, pub T);
+pub(crate) struct Jet<T>(pub T, pub T, pub T);
 
 /// The product of two quantities, with derivatives.
 #[inline(always)]
-pub(super) fn product<T: Number>(Jet(a, a1, a2): Jet<T>, Jet(b, b1, b2): Jet<T>) -> Jet<T> {
+pub(crate) fn product<T: Number>(Jet(a, a1, a2): Jet<T>, Jet(b, b1, b2): Jet<T>) -> Jet<T> {
     Jet(a * b, a1 * b + a * b1, a2 * b + a1 * b1 * 2.0 + a * b2)
 }

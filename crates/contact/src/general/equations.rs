@@ -19,10 +19,10 @@ const STRONG: f64 = 1.0;
 
 /// How near to 1 the ratio of the tangential force to its limit may be at the start of contact.
 /// Nearer contacts are computed at this distance: rounding would decide over them time and again.
-const BORDER: f64 = 5e-14;
+pub(crate) const BORDER: f64 = 5e-14;
 
 /// The gap over the limit below which a stick phase has only begun.
-const AT_LIMIT: f64 = 1e-12;
+pub(crate) const AT_LIMIT: f64 = 1e-12;
 
 /// Highest power of u in any equation.
 const POWERS: usize = 9;

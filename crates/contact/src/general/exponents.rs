@@ -67,7 +67,7 @@ impl Exponents {
         let half = n / 2;
         let p = match law.normal {
             Normal::Linear => n,
-            Normal::Hertz => 3 * half,
+            _ => 3 * half,
         };
         let d = match law.damping {
             _ if !damped => p,

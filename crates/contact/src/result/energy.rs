@@ -29,9 +29,10 @@ pub struct EnergyLedger {
     pub normal_initial: f64,
     /// Normal kinetic energy at the end, ε_n²/2.
     pub normal_final: f64,
-    /// Normal energy taken by damping, ∫ a √x ẋ² dt, or by hysteresis.
+    /// Normal energy taken by damping, ∫ a √x ẋ² dt, or by hysteresis, also that of pull-off.
     pub damping: f64,
-    /// Normal energy left in the compression at the end, (2/5) x^{5/2}; 0 without damping.
+    /// Normal energy left in the compression at the end, (2/5) x^{5/2}; 0 without damping. Of
+    /// bodies that stay together: what it is beyond that where they touched.
     pub compression_left: f64,
 }
 

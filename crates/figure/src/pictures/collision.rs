@@ -105,7 +105,7 @@ fn panels(title: &str, course: &Course<'_>, [force, time, speed]: [&str; 3]) -> 
 /// The names of the axes of forces and time.
 fn axes(contact: &Contact) -> [&'static str; 2] {
     match contact.law().normal {
-        Normal::Hertz => [FORCE, TIME],
+        Normal::Hertz | Normal::Dmt | Normal::Jkr => [FORCE, TIME],
         Normal::Linear => ["force in units of m β^{1/2} g_n", "time t in units of β^{−1/2}"],
     }
 }

@@ -26,6 +26,8 @@ pub struct Course<'a> {
     history: &'a History,
     samples: Vec<Snapshot>,
     units: Units,
+    /// Whether the limit of friction is no normal force.
+    adhesive: bool,
     /// The moment up to which it is drawn, if that is not the end.
     until: Option<Snapshot>,
 }
@@ -51,7 +53,8 @@ impl<'a> Course<'a> {
     pub fn new(collision: &Collision, history: &'a History, width: f64) -> Self {
         let phases = history.phases();
         let samples = phases.flat_map(|phase| samples(collision, history, phase, width)).collect();
-        Self { history, samples, units: Units::SCALED, until: None }
+        let adhesive = collision.contact.law().normal.is_adhesive();
+        Self { history, samples, units: Units::SCALED, adhesive, until: None }
     }
 
     /// The same course, drawn in other units.
@@ -76,7 +79,10 @@ impl<'a> Course<'a> {
 
     /// The largest normal force.
     pub fn largest_force(&self) -> f64 {
-        let most = self.samples.iter().fold(0.0_f64, |most, sample| most.max(sample.normal_force));
+        let force = |sample: &Snapshot| {
+            if self.adhesive { sample.normal_force.max(sample.limit) } else { sample.normal_force }
+        };
+        let most = self.samples.iter().fold(0.0_f64, |most, sample| most.max(force(sample)));
         self.units.force * most
     }
 
@@ -86,7 +92,13 @@ impl<'a> Course<'a> {
         let panel = self.panel(svg, frame, (-largest, largest));
         let force = self.units.force;
         panel.curve(svg, self.curve(force, |sample| sample.normal_force), NORMAL);
-        panel.curve(svg, self.curve(-force, |sample| sample.normal_force), NORMAL_MIRRORED);
+        if self.adhesive {
+            for force in [force, -force] {
+                panel.curve(svg, self.curve(force, |sample| sample.limit), NORMAL_MIRRORED);
+            }
+        } else {
+            panel.curve(svg, self.curve(-force, |sample| sample.normal_force), NORMAL_MIRRORED);
+        }
         panel.curve(svg, self.curve(force, |sample| sample.tangential_force), TANGENTIAL);
         panel.border(svg);
         panel
@@ -194,7 +206,9 @@ pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>]) {
             svg.line((x, y - 0.5 * MARK), (x, y + 0.5 * MARK), FRAME);
         });
     }
-    for (text, stroke) in [("F_n", NORMAL), ("−F_n", NORMAL_MIRRORED), ("F_t/μ", TANGENTIAL)] {
+    let adhesive = courses.iter().any(|course| course.adhesive);
+    let mirrored = if adhesive { "friction limit/μ" } else { "−F_n" };
+    for (text, stroke) in [("F_n", NORMAL), (mirrored, NORMAL_MIRRORED), ("F_t/μ", TANGENTIAL)] {
         legend.entry(svg, KEY, text, |svg, key| {
             let y = key.top + 0.5 * key.height;
             svg.line((key.left, y), (key.right(), y), stroke);

@@ -5,6 +5,7 @@ use stickslip_model::Side;
 use stickslip_model::spheres::{ForceSwitch, ImpactReport};
 
 use super::csv::Rows;
+use super::rows::ADHERES;
 
 /// The columns of results that every impact has, before those of the spheres.
 const RESULTS: [&str; 9] = [
@@ -86,6 +87,9 @@ pub fn write(rows: &mut Rows, impact: &ImpactReport, status: &str) {
     rows.number(contact.kappa());
     rows.number(impact.psi());
     rows.number(contact.damping());
+    if outcome.adheres {
+        return write_adhering(rows, impact);
+    }
     rows.number(outcome.eps_n);
     optional(rows, outcome.eps_t);
     rows.number(outcome.contact_time_s);
@@ -114,6 +118,19 @@ pub fn write(rows: &mut Rows, impact: &ImpactReport, status: &str) {
     rows.number(energy.compression_left_j);
     rows.number(energy.unbalanced_j());
     rows.field(status);
+}
+
+/// Writes what there is behind the parameters of bodies that stay together.
+fn write_adhering(rows: &mut Rows, impact: &ImpactReport) {
+    let outcome = &impact.outcome;
+    rows.fields(["", ""]);
+    rows.number(outcome.contact_time_s);
+    rows.count(outcome.switches.len());
+    rows.count(impact.reversals());
+    rows.field(impact.itinerary());
+    let empty = impact.spheres().len() * SPHERES[0].len() + ACCOUNT.len() - 1;
+    (0..empty).for_each(|_| rows.field(""));
+    rows.field(ADHERES);
 }
 
 /// Writes the switches of the impact in row `case`.

@@ -24,15 +24,22 @@ pub const LOCATED_ORBITS: [&str; 4] = ["orbit_count", "orbits", "region", "dista
 pub const EVENTS: [&str; 8] =
     ["case", "index", "time", "time_left", "to", "side", "spring", "velocity"];
 
+/// The status of a collision of bodies that stay together, and so have no restitution.
+pub const ADHERES: &str = "adheres";
+
 /// Writes the results of a collision with their `status`. They follow the fields of the input.
 pub fn write_collision(rows: &mut Rows, collision: &Collision, status: &str) {
-    rows.number(collision.eps_n);
-    rows.number(collision.eps_t());
+    if collision.adheres {
+        rows.fields(["", ""]);
+    } else {
+        rows.number(collision.eps_n);
+        rows.number(collision.eps_t());
+    }
     rows.count(collision.switches.len());
     rows.field(collision.itinerary());
     rows.number(collision.contact_time);
     rows.count(collision.reversals);
-    rows.field(status);
+    rows.field(if collision.adheres { ADHERES } else { status });
 }
 
 /// Writes the estimates of a collision. They follow its results.

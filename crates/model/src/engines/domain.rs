@@ -1,7 +1,7 @@
 //! The parameters for which the integrators compute collisions.
 
-use stickslip_contact::Contact;
 use stickslip_contact::domain::{Domain, OutOfDomain};
+use stickslip_contact::{Contact, Law};
 
 /// The range of the integrators without viscous damping; a hysteretic force has the damping
 /// k₂/k₁ − 1.
@@ -28,6 +28,12 @@ const DAMPED: Domain = Domain {
     damping: (1e-8, 1e4),
 };
 
+/// The range of the pull-off force f. What is weaker acts for less than a step at the start of
+/// contact. With what is stronger, ε_n is lost in the energy of the attraction, f^{5/3} in size.
+const PULL_OFF: (f64, f64) = (1e-8, 1e2);
+/// The strongest damping beside adhesion: what it damps away takes steps of its own.
+const ADHESIVE_DAMPING: f64 = 1e2;
+
 /// The largest decay of friction. What is faster changes within a step of the velocity that
 /// rounding leaves.
 const MOST_DECAY: f64 = 1e9;
@@ -51,7 +57,18 @@ fn of_share(contact: &Contact, least: f64) -> OutOfDomain {
 
 /// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
-    let friction = contact.law().friction;
+    let Law { friction, normal, pull_off, .. } = contact.law();
+    if normal.is_adhesive() {
+        let ranges = [
+            ("pull_off", pull_off, PULL_OFF),
+            ("damping", contact.damping(), (0.0, ADHESIVE_DAMPING)),
+        ];
+        for (quantity, value, (least, most)) in ranges {
+            if !(least..=most).contains(&value) {
+                return Err(OutOfDomain { engine: DAMPED.engine, quantity, value, least, most });
+            }
+        }
+    }
     if !friction.is_constant() {
         let (engine, value, most) = (DAMPED.engine, friction.decay, MOST_DECAY);
         if value > most {

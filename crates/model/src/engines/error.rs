@@ -43,6 +43,15 @@ pub enum CollisionError {
         /// Scaled time at which that begins.
         time: f64,
     },
+    /// The bodies stay together for ever, held by adhesion, and what is asked for needs an end of
+    /// the contact.
+    #[error(
+        "the bodies stay together, held by adhesion: that is certain from scaled time {time} on"
+    )]
+    Adheres {
+        /// Scaled time at which that is certain.
+        time: f64,
+    },
     /// A result is beyond the range of doubles.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),

@@ -8,6 +8,7 @@ mod closed;
 mod followed;
 mod record;
 
+use stickslip_contact::adhesive::AdhesiveContact;
 use stickslip_contact::general::{self, GeneralContact};
 use stickslip_contact::regularized::{Regularized, components};
 use stickslip_contact::{Collision, Contact, Regime, Side, Switch};
@@ -34,10 +35,13 @@ pub struct Snapshot {
     /// Reduced elongation y of the spring, s F/κ while sliding; in other laws −F_t/(μκ).
     pub spring: f64,
     /// Reduced tangential force F_t/μ, in the paper's law −κ y, in the units of the normal force;
-    /// |F_t|/μ ≤ |F|.
+    /// |F_t|/μ is at most the [`limit`](Self::limit).
     pub tangential_force: f64,
     /// Reduced tangential velocity w.
     pub velocity: f64,
+    /// Coulomb's limit over μ: |F| with one coefficient and without adhesion.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub limit: f64,
 }
 
 /// The course of one collision, from [`Engine::history`](crate::Engine::history) or
@@ -79,6 +83,7 @@ enum Run {
     Closed(Box<Closed>),
     Paper(Record<Regularized, { components::STATE }>),
     Other(Record<GeneralContact, { general::STATE }>),
+    Adhesive(Record<AdhesiveContact, { general::STATE }>),
 }
 
 /// One phase of a [`History`].
@@ -138,11 +143,17 @@ impl History {
         Self(Run::Other(record))
     }
 
+    /// The course of a contact with adhesion.
+    pub(crate) fn of_adhesive(record: Record<AdhesiveContact, { general::STATE }>) -> Self {
+        Self(Run::Adhesive(record))
+    }
+
     fn course(&self) -> &dyn Course {
         match &self.0 {
             Run::Closed(closed) => &**closed,
             Run::Paper(record) => record,
             Run::Other(record) => record,
+            Run::Adhesive(record) => record,
         }
     }
 

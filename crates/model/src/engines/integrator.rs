@@ -1,6 +1,8 @@
 //! A collision integrated from first touch to separation: start reading here.
 
+use stickslip_contact::adhesive::{AdhesiveContact, HELD};
 use stickslip_contact::domain::OutOfDomain;
+use stickslip_contact::general::{ContactSystem, GeneralContact};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{DAMPING, STATE, T, U};
@@ -149,10 +151,14 @@ impl Collider {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let options = self.options_for(&contact)?;
-        if !contact.obeys_paper() {
-            return general::collide(self.pair, contact, &options, collision, &mut ());
+        if contact.obeys_paper() {
+            return self.observe(contact, &options, collision, &mut ());
         }
-        self.observe(contact, &options, collision, &mut ())
+        if contact.law().normal.is_adhesive() {
+            let system = AdhesiveContact::new(contact);
+            return general::collide(self.pair, system, &options, collision, &mut ());
+        }
+        general::collide(self.pair, GeneralContact::new(contact), &options, collision, &mut ())
     }
 
     /// As [`Self::collide`], and then follows the same switches once more by a Taylor method with
@@ -203,9 +209,18 @@ impl Collider {
             let statistics = self.observe(contact, &options, &mut collision, &mut record)?;
             return Ok((collision, statistics, History::of_paper(record)));
         }
-        let mut record = Record::before(general::system(contact));
+        if contact.law().normal.is_adhesive() {
+            let system = AdhesiveContact::new(contact).with_reversals();
+            let mut record = Record::before(system);
+            let statistics =
+                general::collide(self.pair, system, &options, &mut collision, &mut record)?;
+            require_separation(&collision)?;
+            return Ok((collision, statistics, History::of_adhesive(record)));
+        }
+        let system = GeneralContact::new(contact).with_reversals();
+        let mut record = Record::before(system);
         let statistics =
-            general::collide(self.pair, contact, &options, &mut collision, &mut record)?;
+            general::collide(self.pair, system, &options, &mut collision, &mut record)?;
         Ok((collision, statistics, History::of_other(record)))
     }
 
@@ -271,10 +286,14 @@ impl Collider {
         let options = self.recorded_options(&contact)?;
         if contact.obeys_paper() {
             let record = self.record(Regularized::new(contact), &options)?;
-            Ok(History::of_paper(record))
-        } else {
-            Ok(History::of_other(self.record(general::system(contact), &options)?))
+            return Ok(History::of_paper(record));
         }
+        if contact.law().normal.is_adhesive() {
+            let system = AdhesiveContact::new(contact).with_reversals();
+            return Ok(History::of_adhesive(self.record(system, &options)?));
+        }
+        let system = GeneralContact::new(contact).with_reversals();
+        Ok(History::of_other(self.record(system, &options)?))
     }
 
     /// Runs the contact of `system` and keeps its course.
@@ -291,6 +310,9 @@ impl Collider {
         let run = run_with(self.pair, &system, start, f64::INFINITY, options, &mut record)?;
         match run.outcome {
             Outcome::EndedByGuard { guard: END } => Ok(record),
+            Outcome::EndedByGuard { guard: HELD } => {
+                Err(CollisionError::Adheres { time: record.duration() })
+            }
             outcome => Err(CollisionError::Unfinished { outcome, time: record.duration() }),
         }
     }
@@ -336,9 +358,20 @@ impl Collider {
         // A first phase so much shorter than a step is lost in the rounding of the guard that ends
         // it.
         let damped = contact.damping() > 0.0 && contact.law().damping.is_viscous();
-        if damped && onset < BRIEF {
+        if contact.law().normal.is_adhesive() {
+            // The length of the first phase in s, up to a factor.
+            let pull = contact.kappa() * contact.psi();
+            let brief = contact.law().pull_off.sqrt() / pull.sqrt().max(4.0 * pull);
+            options.first_step = options.first_step.map(|h| h.min(4.0 * brief));
+        } else if damped && onset < BRIEF {
             options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
         }
         Ok(options)
     }
+}
+
+/// Refuses the course of bodies that stay together, which has no end.
+fn require_separation(collision: &Collision) -> Result<(), CollisionError> {
+    let time = collision.contact_time;
+    if collision.adheres { Err(CollisionError::Adheres { time }) } else { Ok(()) }
 }

@@ -19,8 +19,12 @@ use crate::restitution;
 /// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
 /// F_t = r γ ξ^e g              (without history)
 /// F_n = k ξ, k₂ (ξ − ξ₀)       (hysteretic) while ξ grows and falls; F_t = k_t ζ
+/// F_n = ρ ξ^{3/2} − 4πγ_s R    (dmt)       and |F_t| ≤ μ (ρ ξ^{3/2} + 4πγ_s R)
 /// μ = μ_d + (μ_s − μ_d) e^(−β |g|)   where friction decays
 /// ```
+///
+/// In JKR (`jkr`) the square of the contact radius over R takes the place of ξ everywhere but in
+/// the elastic force, as [`Normal::Jkr`] has it; F_po is 3πγ_s R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Constants {
@@ -59,6 +63,9 @@ pub struct Constants {
     /// What k₂/k₁ − 1 is in 1/m of the greatest overlap, where the damping is `hardening`. Luding's
     /// law has (k₂ᵐᵃˣ/k₁ − 1)/ξ*, and Walton's and Braun's k₂ = k₁ + S F has S.
     pub hardening_per_m: Option<f64>,
+    /// Surface energy γ_s of adhesion in J/m²: half the work of adhesion, and what LAMMPS takes as
+    /// the fourth number of `dmt` and `jkr`.
+    pub surface_energy_j_per_m2: Option<f64>,
     /// Coefficient of normal restitution ε_n, from which γ or k₂/k₁ follows by
     /// [`restitution::damping`].
     pub e_n: Option<f64>,
@@ -78,6 +85,7 @@ pub struct Forces {
     tangential: Option<f64>,
     dashpot: Dashpot,
     pub(super) tangential_damping_ratio: f64,
+    surface_energy: Option<f64>,
 }
 
 /// The damping γ of the normal force.
@@ -133,7 +141,7 @@ impl Forces {
                 unused(&quantity::HERTZ_STIFFNESS, c.hertz_stiffness_kg_per_s2_m0_5)?;
                 Some(required(&quantity::NORMAL_STIFFNESS, c.normal_stiffness_kg_per_s2)?)
             }
-            Normal::Hertz => {
+            Normal::Hertz | Normal::Dmt | Normal::Jkr => {
                 unused(&quantity::NORMAL_STIFFNESS, c.normal_stiffness_kg_per_s2)?;
                 checked(&quantity::HERTZ_STIFFNESS, c.hertz_stiffness_kg_per_s2_m0_5)?
             }
@@ -155,8 +163,24 @@ impl Forces {
         };
         let ratio = checked(&quantity::TANGENTIAL_DAMPING_RATIO, c.tangential_damping_ratio)?;
         let tangential_damping_ratio = ratio.unwrap_or(0.0);
+        let surface_energy = adhesion(law, c)?;
         let dashpot = Dashpot::new(law, c)?;
-        Ok(Self { law, friction, elastic, tangential, dashpot, tangential_damping_ratio })
+        Ok(Self {
+            law,
+            friction,
+            elastic,
+            tangential,
+            dashpot,
+            tangential_damping_ratio,
+            surface_energy,
+        })
+    }
+
+    /// The force in N that separates two bodies with an effective radius; 0 without adhesion.
+    pub(super) fn pull_off_n(&self, effective_radius_m: f64) -> f64 {
+        let factor = if self.law.normal == Normal::Dmt { 4.0 } else { 3.0 };
+        let energy = self.surface_energy.unwrap_or(0.0);
+        factor * std::f64::consts::PI * energy * effective_radius_m
     }
 
     /// Elastic constant, and the surface with the constants of stiffness and damping, for an
@@ -192,6 +216,7 @@ impl From<&Surface> for Forces {
             tangential: Some(surface.tangential_stiffness_kg_per_s2),
             dashpot: Dashpot::Time(surface.damping_time_s),
             tangential_damping_ratio: 0.0,
+            surface_energy: None,
         }
     }
 }
@@ -202,7 +227,8 @@ impl Dashpot {
         let critical = restitution::critical_damping(law);
         let has_time = matches!(
             (law.normal, law.damping),
-            (Normal::Linear, Damping::Linear) | (Normal::Hertz, Damping::Viscoelastic)
+            (Normal::Linear, Damping::Linear)
+                | (Normal::Hertz | Normal::Dmt | Normal::Jkr, Damping::Viscoelastic)
         );
         let [has_ratio, damped] = [critical.is_some(), law.damping != Damping::None];
         let viscous = law.damping.is_viscous();
@@ -235,6 +261,9 @@ impl Dashpot {
                 return Err(InvalidValue::phrase(first.name, phrase, expected).into());
             }
             given = Some((quantity, value));
+        }
+        if c.e_n.is_some() {
+            law.require_no_adhesion("the damping of an e_n is")?;
         }
         let velocity = (&quantity::RESTITUTION_VELOCITY, c.e_n_at_m_per_s);
         if c.e_n.is_none() || !restitution::depends_on_velocity(law) {
@@ -304,6 +333,20 @@ fn decaying(law: Law, constants: &Constants) -> Result<Friction, InvalidValue> {
     // Without friction nothing decays.
     let dynamic = if constants.friction > 0.0 { dynamic / constants.friction } else { 1.0 };
     Ok(Friction { dynamic, decay })
+}
+
+/// The surface energy, which belongs to a law with adhesion.
+fn adhesion(law: Law, constants: &Constants) -> Result<Option<f64>, InvalidValue> {
+    let (quantity, value) = (&quantity::SURFACE_ENERGY, constants.surface_energy_j_per_m2);
+    if law.pull_off != 0.0 {
+        let expected = format!("{} of the bodies instead", quantity.name);
+        return Err(InvalidValue::phrase("the law", "has a pull-off of scaled numbers", expected));
+    }
+    if law.normal.is_adhesive() {
+        return required(quantity, value).map(Some);
+    }
+    unused(quantity, value)?;
+    Ok(None)
 }
 
 fn missing(name: &'static str, expected: &str) -> InvalidValue {

@@ -10,6 +10,9 @@ use super::observed::Observed;
 /// Two bodies after their collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactOutcome {
+    /// Whether the bodies stay together for ever, held by adhesion: then what would be after the
+    /// contact is NaN, and the rest is up to where that is certain ([`Collision::adheres`]).
+    pub adheres: bool,
     /// Motions after the contact. Positions are those at impact, and a wall keeps its motion.
     pub motions: [Motion; 2],
     /// Impulse on the first body in N s; the second body receives the opposite one.
@@ -46,10 +49,11 @@ pub struct ForceSwitch {
     pub spring_m: Option<f64>,
     /// Tangential velocity of the surfaces along t in m/s.
     pub velocity_m_per_s: f64,
-    /// Size of the normal force F_n in N.
+    /// Size of the normal force F_n in N; with adhesion its elastic part, below 0 where the bodies
+    /// attract each other.
     pub normal_force_n: f64,
     /// Tangential force F_t, −k_t ζ in the paper's law, in N on the first body along t; at a switch
-    /// |F_t| = μ |F_n|.
+    /// |F_t| = μ |F_n|, and with adhesion μ (F_n + 2 F_po).
     pub tangential_force_n: f64,
 }
 
@@ -127,6 +131,7 @@ impl Encounter {
         let switches =
             if self.tangent.is_some() { self.switches(collision) } else { SmallVec::new() };
         ImpactOutcome {
+            adheres: collision.adheres,
             motions,
             impulse_n_s: impulse,
             eps_n: collision.eps_n,
@@ -148,6 +153,8 @@ impl Encounter {
             let pull_n = spring_m.map_or(force * switch.spring, |spring_m| {
                 surface.tangential_stiffness_kg_per_s2 * spring_m
             });
+            let law = impact.contact.law();
+            let limit_n = pull_n.abs() / (surface.friction * law.friction.share(switch.velocity));
             ForceSwitch {
                 time_s: switch.time * impact.time_unit_s,
                 time_left_s: switch.time_left * impact.time_unit_s,
@@ -155,8 +162,7 @@ impl Encounter {
                 side: switch.side,
                 spring_m,
                 velocity_m_per_s: impact.velocity_m_per_s(switch.velocity),
-                normal_force_n: pull_n.abs()
-                    / (surface.friction * impact.contact.law().friction.share(switch.velocity)),
+                normal_force_n: limit_n - 2.0 * law.pull_off * impact.force_unit_n(),
                 tangential_force_n: -pull_n,
             }
         };

@@ -83,6 +83,9 @@ pub const UNLOADING_RATIO: PhysicalQuantity = PhysicalQuantity {
 /// Growth of the unloading stiffness with the greatest overlap, k₂/k₁ − 1 over this overlap.
 pub const HARDENING: PhysicalQuantity =
     not_negative("hardening_per_m", "a finite number, 0 or above, in 1/m");
+/// Surface energy γ of adhesion.
+pub const SURFACE_ENERGY: PhysicalQuantity =
+    positive("surface_energy_j_per_m2", "a finite number above 0, in J/m²");
 /// Damping γ of the normal force.
 pub const DAMPING_COEFFICIENT: PhysicalQuantity =
     not_negative("damping_coefficient", "a finite number, 0 or above, in kg/(s mᵉ)");

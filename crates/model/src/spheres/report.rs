@@ -58,7 +58,7 @@ pub struct Comparison {
     /// ε_n by [`normal::pade`]; `None` unless the normal force is the paper's.
     pub eps_n_pade: Option<f64>,
     /// ε_t of pure Coulomb sliding with the ε_n of the collision, [`coulomb::restitution`]; `None`
-    /// in a central impact, or if the normal force may attract or friction decays.
+    /// in a central impact, or if the normal force may attract, the bodies too, or friction decays.
     pub eps_t_coulomb: Option<f64>,
     /// [`Impact::mindlin_stiffness_kg_per_s2`](super::Impact::mindlin_stiffness_kg_per_s2); `None`
     /// where the normal force is linear.
@@ -66,9 +66,9 @@ pub struct Comparison {
     /// [`BodyPair::mindlin_kappa`](crate::spheres::BodyPair::mindlin_kappa); `None` where the
     /// normal force is linear.
     pub mindlin_kappa: Option<f64>,
-    /// Largest compression ξ in m without damping.
+    /// Largest compression ξ in m without damping and adhesion.
     pub undamped_compression_m: f64,
-    /// Largest normal force F_n in N without damping.
+    /// Largest normal force F_n in N without damping and adhesion.
     pub undamped_normal_force_n: f64,
 }
 
@@ -108,13 +108,17 @@ impl ImpactReport {
         &self.outcome.motions[..self.encounter.spheres().count()]
     }
 
-    /// Refuses a report with a result that is not a finite number. [`Collision::require_finite`]
-    /// checks the collision.
+    /// Refuses a report with a result that is not a finite number, but for bodies that stay
+    /// together. [`Collision::require_finite`] checks the collision.
     ///
     /// # Errors
     /// [`NotFinite`] names the first.
     pub fn require_finite(&self) -> Result<(), NotFinite> {
         let Self { encounter, outcome, comparison, .. } = self;
+        // Bodies that stay together have no motion of their own afterwards.
+        if outcome.adheres {
+            return Ok(());
+        }
         let vectors = self.spheres().iter().flat_map(|motion| {
             [("a velocity", motion.velocity_m_per_s), ("a spin", motion.spin_rad_per_s)]
         });
@@ -143,6 +147,7 @@ impl Comparison {
         let coulomb = |_| coulomb::restitution(contact.psi(), outcome.eps_n);
         let (law, damped) = (contact.law(), contact.damping() > 0.0);
         let hertz = law.normal == Normal::Hertz;
+        let adhesive = law.normal.is_adhesive();
         let viscoelastic = law.damping == Damping::Viscoelastic && law.end == ContactEnd::Force;
         let of_paper = hertz && (viscoelastic || !damped);
         let viscous = damped && law.damping.is_viscous();
@@ -151,7 +156,7 @@ impl Comparison {
         Self {
             eps_n_series: of_paper.then(|| normal::series(contact.damping())),
             eps_n_pade: of_paper.then(|| normal::pade(contact.damping())),
-            eps_t_coulomb: outcome.eps_t.filter(|_| !attracts && steady).map(coulomb),
+            eps_t_coulomb: outcome.eps_t.filter(|_| !attracts && steady && !adhesive).map(coulomb),
             mindlin_stiffness_kg_per_s2: hertz.then(|| impact.mindlin_stiffness_kg_per_s2()),
             mindlin_kappa: hertz.then(|| impact.pair.mindlin_kappa()),
             undamped_compression_m: impact.largest_compression_m(),

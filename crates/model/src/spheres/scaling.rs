@@ -46,7 +46,7 @@ pub struct BodyPair {
     /// [`Constants`](super::forces::Constants).
     pub surface: Surface,
     /// The contact law. The decay of its friction is that at a normal velocity of 1 m/s, to which
-    /// it is proportional.
+    /// it is proportional. Its pull-off force is in N.
     #[cfg_attr(feature = "serde", serde(default))]
     pub law: Law,
     /// Ratio of tangential and normal damping; 0 in the paper's law.
@@ -91,6 +91,7 @@ impl BodyPair {
             forces.resolved(effective_mass_kg, hertz, 1.5 * stiffness_ratio * hertz);
         surface.validate()?;
         let alpha = 1.0 / (1.0 + effective_mass_kg * (one.turning + two.turning));
+        let pull_off = forces.pull_off_n(effective_radius_m);
         let Friction { dynamic, decay } = forces.law.friction;
         let friction = Friction { dynamic, decay: decay * surface.friction / alpha };
         let pair = Self {
@@ -100,7 +101,7 @@ impl BodyPair {
             stiffness_ratio,
             alpha,
             surface,
-            law: Law { friction, ..forces.law },
+            law: Law { friction, pull_off, ..forces.law },
             tangential_damping_ratio: forces.tangential_damping_ratio,
         };
         for (name, value) in [
@@ -109,6 +110,8 @@ impl BodyPair {
             ("elastic_constant", pair.elastic_constant),
             ("stiffness_ratio", pair.stiffness_ratio),
             ("alpha", pair.alpha),
+            // What it is without adhesion is no result.
+            ("pull_off_n", if pair.law.normal.is_adhesive() { pull_off } else { 1.0 }),
         ] {
             InvalidValue::check(name, value, POSITIVE, value > 0.0 && value.is_finite())?;
         }
@@ -188,6 +191,7 @@ impl BodyPair {
         let beta = self.elastic_constant / self.effective_mass_kg;
         let units = Units::new(law, beta, normal_m_per_s);
         let Units { time, length, .. } = units;
+        law.pull_off *= time / (self.effective_mass_kg * normal_m_per_s);
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = self.surface;
         let stiffness = match law.tangential {
             Tangential::Constant => tangential_stiffness_kg_per_s2,
@@ -234,21 +238,21 @@ impl Impact {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
-    /// Largest compression ξ in m without damping: (5/4)^{2/5} length units, and one where the
-    /// force is linear. With damping ξ stays below it.
+    /// Largest compression ξ in m without damping and adhesion: (5/4)^{2/5} length units, and one
+    /// where the force is linear. With damping ξ stays below it.
     pub fn largest_compression_m(&self) -> f64 {
         match self.pair.law.normal {
-            Normal::Hertz => 1.25_f64.powf(0.4) * self.length_unit_m(),
             Normal::Linear => self.length_unit_m(),
+            _ => 1.25_f64.powf(0.4) * self.length_unit_m(),
         }
     }
 
-    /// Largest normal force F_n in N without damping: (5/4)^{3/5} force units, and one where it is
-    /// linear.
+    /// Largest normal force F_n in N without damping and adhesion: (5/4)^{3/5} force units, and one
+    /// where it is linear.
     pub fn largest_normal_force_n(&self) -> f64 {
         match self.pair.law.normal {
-            Normal::Hertz => 1.25_f64.powf(0.6) * self.force_unit_n(),
             Normal::Linear => self.force_unit_n(),
+            _ => 1.25_f64.powf(0.6) * self.force_unit_n(),
         }
     }
 

@@ -17,7 +17,9 @@ impl Units {
     /// The units under a law with β, the elastic constant over the effective mass.
     pub fn new(law: Law, beta: f64, normal_m_per_s: f64) -> Self {
         let time = match law.normal {
-            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
+            Normal::Hertz | Normal::Dmt | Normal::Jkr => {
+                1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2))
+            }
             Normal::Linear => 1.0 / beta.sqrt(),
         };
         Self { law, beta, time, length: normal_m_per_s * time }
@@ -29,12 +31,12 @@ impl Units {
         let &Self { law, beta, time, length } = self;
         match (law.normal, law.damping) {
             (_, Damping::None) => 0.0,
-            (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
             (_, Damping::Linear) => beta * damping_time_s * time,
-            (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
+            (Normal::Linear, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
+            (_, Damping::Viscoelastic) => damping_time_s / time,
             (_, Damping::Hysteretic) => damping_time_s,
             (Normal::Linear, Damping::Hardening) => damping_time_s * length,
-            (Normal::Hertz, Damping::Hardening) => damping_time_s * 1.25_f64.powf(0.4) * length,
+            (_, Damping::Hardening) => damping_time_s * 1.25_f64.powf(0.4) * length,
             (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
         }
     }

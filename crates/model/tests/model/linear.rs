@@ -20,6 +20,7 @@ const ATTRACTING: Law = Law {
     end: ContactEnd::Overlap,
     coulomb_test: CoulombTest::Total,
     friction: Law::PAPER.friction,
+    pull_off: 0.0,
 };
 const LIMITED: Law = Law { limit_damping: true, ..ATTRACTING };
 const TO_ZERO_FORCE: Law = Law { end: ContactEnd::Force, ..ATTRACTING };

@@ -15,6 +15,7 @@ mod plain;
 
 use stickslip_model as model;
 
+mod adhesive;
 mod estimates;
 mod exact;
 mod forces;

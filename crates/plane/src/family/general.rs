@@ -11,7 +11,7 @@
 //! one and is the same at all points of a plane, so its end is known beforehand.
 
 use stickslip_model::general::{
-    Beginning, CREST, ContactMode, GUARDS, GeneralContact, REVERSAL, STATE,
+    Beginning, CREST, ContactMode, ContactSystem, GUARDS, GeneralContact, REVERSAL, STATE,
 };
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};

@@ -80,6 +80,7 @@ impl FitSettings {
         InvalidValue::check("mu", friction, above, friction > 0.0)?;
         let ok = tangential_stiffness_kg_per_s2 > 0.0 || !self.law().remembers();
         InvalidValue::check("kappa", tangential_stiffness_kg_per_s2, above, ok)?;
+        self.law().require_no_adhesion("a fit is")?;
         let decays = !self.law().friction.is_constant();
         let phrase = "has a friction that decays with the velocity, which is not fitted";
         let other = InvalidValue::phrase("the law", phrase, "one coefficient of friction");

@@ -137,6 +137,7 @@ impl TableSettings {
             let expected = format!("{finest:e} to {coarsest:e}");
             return Err(InvalidValue::new("bound", self.bound, expected).into());
         }
+        self.window.law().require_no_adhesion("a table is")?;
         if !self.window.law().friction.is_constant() {
             let phrase = "has a friction that decays with the velocity, of which no table is made";
             let expected = "one coefficient of friction";

@@ -9,7 +9,7 @@ use stickslip_model::{
 pub fn undamped_contact_time(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => std::f64::consts::PI,
-        Normal::Hertz => exact::CONTACT_TIME,
+        _ => exact::CONTACT_TIME,
     }
 }
 
@@ -49,9 +49,9 @@ const LONGEST: f64 = 10.0;
 /// do it, with a force that is kept from attracting until the overlap vanishes. Without steps both
 /// are the same.
 ///
-/// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the
-/// contact has not ended after ten times `duration` (its duration without steps) or after 10⁹
-/// steps, or if numbers are no longer finite.
+/// `None` if the law has adhesion, if `dt` is not a finite number above 0, if `phase` is not from 0
+/// to below 1, if the contact has not ended after ten times `duration` (its duration without steps)
+/// or after 10⁹ steps, or if numbers are no longer finite.
 pub fn step(
     contact: &Contact,
     dt: f64,
@@ -59,6 +59,9 @@ pub fn step(
     scheme: Scheme,
     duration: f64,
 ) -> Option<Stepped> {
+    if contact.law().normal.is_adhesive() {
+        return None;
+    }
     if !(dt > 0.0 && dt.is_finite() && (0.0..1.0).contains(&phase)) {
         return None;
     }
@@ -143,7 +146,7 @@ impl ForceRule {
         let (pushed, factor) = self.pushed(state);
         let (elastic, slope) = match law.normal {
             Normal::Linear => (factor * pushed, factor),
-            Normal::Hertz => (factor * pushed * pushed.sqrt(), 1.5 * factor * pushed.sqrt()),
+            _ => (factor * pushed * pushed.sqrt(), 1.5 * factor * pushed.sqrt()),
         };
         let eta = match law.damping {
             Damping::None | Damping::Hysteretic | Damping::Hardening => 0.0,
@@ -177,7 +180,7 @@ impl ForceRule {
         let factor = 1.0 + self.damping;
         let power = match self.law.normal {
             Normal::Linear => -1.0,
-            Normal::Hertz => -2.0 / 3.0,
+            _ => -2.0 / 3.0,
         };
         (f64::max(0.0, x - greatest * (1.0 - factor.powf(power))), factor)
     }

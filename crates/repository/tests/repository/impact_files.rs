@@ -99,9 +99,13 @@ fn spheres() -> Value {
 #[test]
 fn the_examples_are_accepted() {
     let schema = schema();
-    for name in
-        ["steel_spheres.json", "glass_on_wall.json", "steel_pair.json", "hooke_spheres.json"]
-    {
+    for name in [
+        "steel_spheres.json",
+        "glass_on_wall.json",
+        "steel_pair.json",
+        "hooke_spheres.json",
+        "adhesive_spheres.json",
+    ] {
         let errors: Vec<_> =
             schema.iter_errors(&example_value(name)).map(|e| e.to_string()).collect();
         assert!(errors.is_empty(), "{name}: {errors:?}");

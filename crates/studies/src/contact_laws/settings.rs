@@ -84,6 +84,7 @@ impl ContactLawSettings {
             InvalidValue::check(name, [low, high], "LO:HI with 0 <= LO < HI", accepted)?;
         }
         for named in &self.laws {
+            named.law.require_no_adhesion("the study of laws is")?;
             self.contact(named, self.standard, true)?;
         }
         Ok(())

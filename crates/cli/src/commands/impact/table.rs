@@ -6,7 +6,7 @@ use stickslip_model::Engine;
 use stickslip_model::spheres::{ForceSwitch, ImpactReport, Vector3};
 use stickslip_solver::Statistics;
 
-use crate::output::text::{aligned, describe, explained, law, number, pairs, work};
+use crate::output::text::{ADHERES, aligned, describe, explained, law, number, pairs, work};
 
 /// Writes `impact` as tables.
 pub fn write(
@@ -26,12 +26,17 @@ pub fn write(
     )?;
     law(out, contact)?;
     writeln!(out)?;
-    vectors(out, impact)?;
+    let ends = !impact.outcome.adheres;
+    if ends {
+        vectors(out, impact)?;
+    }
     switches(out, &impact.outcome.switches)?;
     results(out, impact)?;
-    energy(out, impact)?;
-    observed(out, impact)?;
-    comparison(out, impact)?;
+    if ends {
+        energy(out, impact)?;
+        observed(out, impact)?;
+        comparison(out, impact)?;
+    }
     statistics.map_or(Ok(()), |statistics| work(out, statistics))
 }
 
@@ -90,13 +95,17 @@ fn switches(out: &mut dyn Write, switches: &[ForceSwitch]) -> io::Result<()> {
 
 fn results(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let ImpactReport { encounter, outcome, .. } = impact;
+    if outcome.adheres {
+        writeln!(out, "{ADHERES}\n")?;
+    }
+    let restitution = |value| if outcome.adheres { "none".to_owned() } else { optional(value) };
     pairs(
         out,
         &[
             ("normal velocity g_n [m/s]", number(encounter.normal_m_per_s)),
             ("tangential velocity g_t [m/s]", number(encounter.tangential_m_per_s)),
-            ("normal restitution ε_n", number(outcome.eps_n)),
-            ("tangential restitution ε_t", optional(outcome.eps_t)),
+            ("normal restitution ε_n", restitution(Some(outcome.eps_n))),
+            ("tangential restitution ε_t", restitution(outcome.eps_t)),
             ("contact time [s]", number(outcome.contact_time_s)),
             ("switches", outcome.switches.len().to_string()),
             ("reversals of the motion", impact.reversals().to_string()),

@@ -12,7 +12,7 @@ use stickslip_files::map::{
 };
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::picture::PictureFile;
-use stickslip_model::{Engine, Law};
+use stickslip_model::{Engine, InvalidValue, Law};
 use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::sweep::{self, FailureCount};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
@@ -172,6 +172,8 @@ fn grid(arguments: &MapArguments) -> Result<(Grid, Engine), Failure> {
         (law, tangential_damping) = (pair.law, pair.tangential_damping());
         law::permits(arguments.law.law.as_deref(), "tangential damping", tangential_damping)?;
     }
+    let refused = |error: InvalidValue| Failure::Usage(error.to_string());
+    law.require_no_adhesion("maps are").map_err(refused)?;
     let columns = GridAxis { range: columns, cells: size.columns };
     let rows = GridAxis { range: rows, cells: size.rows };
     Ok((Grid { columns, rows, coordinates, law, tangential_damping }, engine))

@@ -127,6 +127,7 @@ pub struct SurfaceFields {
     critical_damping_ratio: Option<Value>,
     unloading_stiffness_ratio: Option<Value>,
     hardening_per_m: Option<Value>,
+    surface_energy_j_per_m2: Option<Value>,
     e_n: Option<Value>,
     e_n_at_m_per_s: Option<Value>,
     tangential_damping_ratio: Option<Value>,
@@ -328,6 +329,10 @@ impl SurfaceFields {
                 &self.unloading_stiffness_ratio,
             )?,
             hardening_per_m: given(&quantity::HARDENING, &self.hardening_per_m)?,
+            surface_energy_j_per_m2: given(
+                &quantity::SURFACE_ENERGY,
+                &self.surface_energy_j_per_m2,
+            )?,
             e_n: given(&quantity::NORMAL_RESTITUTION, &self.e_n)?,
             e_n_at_m_per_s: given(&quantity::RESTITUTION_VELOCITY, &self.e_n_at_m_per_s)?,
             tangential_damping_ratio: given(

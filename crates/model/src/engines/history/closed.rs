@@ -71,6 +71,7 @@ impl Closed {
             spring,
             tangential_force: -contact.kappa() * spring,
             velocity,
+            limit: normal.force,
         }
     }
 

@@ -1,6 +1,8 @@
-//! The two systems whose runs make courses: the paper's contact and the contact of any law.
+//! The systems whose runs make courses: the paper's contact, and the contact of any law, with
+//! adhesion or without.
 
-use stickslip_contact::general::{self, CREST, ContactMode, GeneralContact, REVERSAL};
+use stickslip_contact::adhesive::HELD;
+use stickslip_contact::general::{self, CREST, ContactMode, ContactSystem, REVERSAL};
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::{Regularized, components};
 use stickslip_contact::{Regime, Side};
@@ -76,6 +78,7 @@ impl Followed<{ components::STATE }> for Regularized {
             spring,
             tangential_force: -self.contact().kappa() * spring,
             velocity: self.velocity(y),
+            limit: self.normal_force(y),
         }
     }
 
@@ -92,12 +95,12 @@ impl Followed<{ components::STATE }> for Regularized {
     }
 }
 
-impl Followed<{ general::STATE }> for GeneralContact {
+impl<S: ContactSystem> Followed<{ general::STATE }> for S {
     type Mode = ContactMode;
     const CLOCK: usize = general::T;
 
     fn start(&self) -> Start<ContactMode, { general::STATE }> {
-        Start { mode: self.first(), s: 0.0, state: Self::start(self) }
+        Start { mode: self.first(), s: 0.0, state: ContactSystem::start(self) }
     }
 
     fn before_start(&self, time: f64) -> State<{ general::STATE }> {
@@ -105,7 +108,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
     }
 
     fn clock_rate(&self, y: &State<{ general::STATE }>) -> f64 {
-        Self::clock_rate(self, y)
+        ContactSystem::clock_rate(self, y)
     }
 
     fn snapshot(&self, mode: ContactMode, y: &State<{ general::STATE }>) -> Snapshot {
@@ -117,6 +120,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
             spring: self.spring(mode, y),
             tangential_force: -self.tangential_force(mode, y),
             velocity: self.velocity(y),
+            limit: self.limit(mode, y),
         }
     }
 
@@ -126,6 +130,7 @@ impl Followed<{ general::STATE }> for GeneralContact {
 
     fn begins(event: &SwitchEvent<ContactMode, { general::STATE }>) -> Begins {
         match event.guard {
+            HELD => Begins::ContactEnd,
             REVERSAL if event.from == event.to => Begins::Nothing,
             REVERSAL | CREST => Begins::Part,
             END if event.from.stage == event.to.stage => Begins::ContactEnd,
@@ -135,6 +140,6 @@ impl Followed<{ general::STATE }> for GeneralContact {
     }
 
     fn flight(&self, mode: ContactMode, y: &State<{ general::STATE }>) -> f64 {
-        Self::flight(self, mode, y)
+        ContactSystem::flight(self, mode, y)
     }
 }

@@ -86,6 +86,7 @@ impl<S: Followed<N>, const N: usize> Record<S, N> {
             normal_force: 0.0,
             spring: 0.0,
             tangential_force: 0.0,
+            limit: 0.0,
             ..parting
         }
     }

@@ -1,12 +1,11 @@
-//! The integration of a contact with any law.
+//! The integration of a contact with any law, with adhesion or without.
 
-use stickslip_contact::general::{CREST, ContactMode, DAMPING, GeneralContact, REVERSAL, STATE, T};
+use stickslip_contact::adhesive::HELD;
+use stickslip_contact::general::{CREST, ContactMode, ContactSystem, DAMPING, REVERSAL, STATE, T};
 use stickslip_contact::phase::END;
-use stickslip_contact::{
-    Collision, Contact, ContactEnd, CoulombTest, EnergyLedger, Law, Normal, Regime, Switch,
-};
+use stickslip_contact::{Collision, ContactEnd, CoulombTest, EnergyLedger, Law, Regime, Switch};
 use stickslip_solver::{
-    EmbeddedPair, Observer, Options, Outcome, ReadableSystem, RunError, Start, State, Statistics,
+    EmbeddedPair, HybridSystem, Observer, Options, Outcome, RunError, Start, State, Statistics,
     SwitchEvent, run_with,
 };
 
@@ -14,15 +13,19 @@ use super::account::Observed;
 use crate::engines::domain;
 use crate::engines::error::CollisionError;
 
-/// Integrates one collision into `collision`, while `course` observes the run too.
-pub fn collide<O: Observer<ContactMode, STATE>>(
+/// Integrates the collision of `system` into `collision`, while `course` observes the run too.
+pub fn collide<S, const G: usize>(
     pair: EmbeddedPair,
-    contact: Contact,
+    system: S,
     options: &Options,
     collision: &mut Collision,
-    course: &mut O,
-) -> Result<Statistics, CollisionError> {
-    let system = system(contact);
+    course: &mut impl Observer<ContactMode, STATE>,
+) -> Result<Statistics, CollisionError>
+where
+    S: ContactSystem + HybridSystem<STATE, G, Mode = ContactMode>,
+{
+    let system = system.with_reversals();
+    let contact = system.contact();
     collision.reset(contact);
     let start = Start { mode: system.first(), s: 0.0, state: system.start() };
     (collision.start, collision.start_side) = (start.mode.regime, start.mode.side);
@@ -49,22 +52,21 @@ pub fn collide<O: Observer<ContactMode, STATE>>(
         run => run?,
     };
     let account = observed.account;
-    if run.outcome != (Outcome::EndedByGuard { guard: END }) {
-        let time = account.elapsed + run.state[T];
-        return Err(CollisionError::Unfinished { outcome: run.outcome, time });
+    match run.outcome {
+        Outcome::EndedByGuard { guard: END } => {}
+        Outcome::EndedByGuard { guard: HELD } => account.collision.adheres = true,
+        outcome => {
+            let time = account.elapsed + run.state[T];
+            return Err(CollisionError::Unfinished { outcome, time });
+        }
     }
-    account.finish(run.mode, run.state);
+    account.finish(&system, run.mode, run.state);
     Ok(run.statistics)
 }
 
-/// The system whose run is a collision.
-pub fn system(contact: Contact) -> GeneralContact {
-    GeneralContact::new(contact).with_reversals()
-}
-
 /// The running account of a collision.
-struct Account<'a> {
-    system: GeneralContact,
+struct Account<'a, S> {
+    system: S,
     collision: &'a mut Collision,
     /// The phase so far.
     phase: ContactMode,
@@ -83,7 +85,7 @@ struct Account<'a> {
 /// Velocity, and rate of velocity, in units of ψ below which the sign is due to tolerances.
 const NO_VELOCITY: f64 = 1e-9;
 
-impl Account<'_> {
+impl<S: ContactSystem> Account<'_, S> {
     /// Closes the phase in state `y`.
     fn leave(&mut self, y: &State<STATE>) {
         if self.phase.regime == Regime::Slip {
@@ -126,9 +128,14 @@ impl Account<'_> {
     }
 
     /// Closes the account in the mode and the state at the end.
-    fn finish(mut self, mode: ContactMode, mut y: State<STATE>) {
+    fn finish<const G: usize>(
+        mut self,
+        hybrid: &impl HybridSystem<STATE, G, Mode = ContactMode>,
+        mode: ContactMode,
+        mut y: State<STATE>,
+    ) {
         if let Some((guard, length)) = self.system.last_slip(mode, &y) {
-            let (next, after) = self.system.transition(mode, guard, 0.0, &y);
+            let (next, after) = hybrid.transition(mode, guard, 0.0, &y);
             self.switch(next, &y, &after);
             (self.lasting, y) = (length, after);
         }
@@ -136,26 +143,25 @@ impl Account<'_> {
         self.leave(y);
         let Self { system, collision, sliding, lasting, .. } = self;
         let contact = collision.contact;
-        let (pushed, rate) = (system.compression(y), system.compression_rate(y));
-        let Law { normal, end, .. } = contact.law();
-        let flight = system.flight(self.phase, y);
+        let rate = system.compression_rate(y);
+        let flight = if collision.adheres { 0.0 } else { system.flight(self.phase, y) };
         collision.contact_time = self.elapsed + flight;
         let mut left = lasting + flight;
         for switch in collision.switches.iter_mut().rev() {
             left += std::mem::replace(&mut switch.time_left, left);
         }
-        collision.eps_n = -rate;
+        collision.eps_n = if collision.adheres { f64::NAN } else { -rate };
         collision.final_velocity = system.velocity(y);
         let [tangential_initial, tangential_final] =
             [contact.psi(), collision.final_velocity].map(|w| 0.5 * w * w);
-        let compression = match normal {
-            Normal::Linear => 0.5 * pushed * pushed,
-            Normal::Hertz => 0.4 * pushed.powf(2.5),
-        };
-        // Where the force is limited, damping takes the rest of the compression.
+        let compression = system.compression_energy(y);
+        // Where the force is limited, damping takes the rest of the compression, and pull-off takes
+        // what it takes.
+        let Law { end, normal, .. } = contact.law();
         let [taken, compression_left] = match end {
-            ContactEnd::Force => [0.0, compression],
-            ContactEnd::Overlap => [compression, 0.0],
+            _ if collision.adheres => [0.0, compression],
+            ContactEnd::Force if !normal.is_adhesive() => [0.0, compression],
+            _ => [compression, 0.0],
         };
         let tangential_damping = system.taken_by_dashpot(y);
         let normal_final = 0.5 * rate * rate;
@@ -173,7 +179,7 @@ impl Account<'_> {
     }
 }
 
-impl Observer<ContactMode, STATE> for Account<'_> {
+impl<S: ContactSystem> Observer<ContactMode, STATE> for Account<'_, S> {
     fn on_switch(&mut self, event: &SwitchEvent<ContactMode, STATE>) {
         match event.guard {
             REVERSAL => {
@@ -185,6 +191,7 @@ impl Observer<ContactMode, STATE> for Account<'_> {
             // The phase goes on.
             CREST => self.phase.stage = event.to.stage,
             END if event.from.stage == event.to.stage => {}
+            HELD => {}
             // Slip goes on where the normal force begins to attract.
             END if event.to.regime == self.phase.regime => {
                 self.leave(&event.before);

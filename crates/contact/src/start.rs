@@ -1,7 +1,8 @@
 //! How near a contact is to starting otherwise.
 
-use super::GeneralContact;
+use crate::adhesive::AdhesiveContact;
 use crate::contact::Contact;
+use crate::general::GeneralContact;
 
 impl Contact {
     /// How badly the start of contact is conditioned: `None` unless the dashpot exceeds the limit
@@ -21,7 +22,11 @@ impl Contact {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn start_layer(&self) -> Option<f64> {
-        if self.obeys_paper() { None } else { GeneralContact::new(*self).start_layer() }
+        match self {
+            _ if self.obeys_paper() => None,
+            _ if self.law().normal.is_adhesive() => AdhesiveContact::new(*self).start_layer(),
+            _ => GeneralContact::new(*self).start_layer(),
+        }
     }
 
     /// How near the contact is to starting otherwise: 1 − the ratio of the tangential force to its
@@ -44,6 +49,10 @@ impl Contact {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn start_margin(&self) -> Option<f64> {
-        if self.obeys_paper() { None } else { GeneralContact::new(*self).beginning_margins()[0] }
+        match self {
+            _ if self.obeys_paper() => None,
+            _ if self.law().normal.is_adhesive() => AdhesiveContact::new(*self).start_margin(),
+            _ => GeneralContact::new(*self).beginning_margins()[0],
+        }
     }
 }
