@@ -40,7 +40,8 @@ def test_contact_laws() -> None:
     table = study.tables["contact_laws"]
     assert len(study.pictures) == 2 * len(table.rows)
     listed = {name for names in table.columns["names"] for name in names.split(", ")}
-    assert listed == set(stickslip.laws())
+    named = stickslip.laws().items()
+    assert listed == {name for name, known in named if known.law["normal"] in ("linear", "hertz")}
     for names, largest, kappa, psi in (
         (row["names"], row["largest"], row["at_kappa"], row["at_psi"])
         for row in (dict(zip(table.meanings, row, strict=True)) for row in table.rows)
