@@ -47,7 +47,8 @@ SWITCH = np.dtype(
 MOST_MOMENTS = 10**6
 
 #: A moment of a collision, in scaled variables: time t, compression x and its rate, normal force,
-#: reduced spring y, tangential force F_t/mu, reduced tangential velocity w.
+#: reduced spring y, tangential force F_t/mu, reduced tangential velocity w, and Coulomb's limit of
+#: F_t/mu.
 MOMENT = np.dtype(
     [
         ("time", "f8"),
@@ -57,6 +58,7 @@ MOMENT = np.dtype(
         ("spring", "f8"),
         ("tangential_force", "f8"),
         ("velocity", "f8"),
+        ("limit", "f8"),
     ]
 )
 

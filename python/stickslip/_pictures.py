@@ -44,18 +44,11 @@ def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
         _shade(found, each)
         each.axhline(0.0, color=RULE, linewidth=0.6)
     limit: dict[str, Any] = {"color": RULE, "linestyle": "--", "linewidth": 1.0}
-    most, name = course["normal_force"], "friction limit $\\pm F_n$"
-    friction = found.to_dict()["parameters"].get("law", {}).get("friction")
-    if friction is not None:
-        slow = np.exp(-friction["decay"] * np.abs(course["velocity"]))
-        most = most * (friction["dynamic"] + (1.0 - friction["dynamic"]) * slow)
-        name = "friction limit"
-    if found.to_dict()["parameters"].get("law", {}).get("pull_off"):
-        # The limit has the pull-off twice, and not the damping.
-        forces.plot(time, most, label="normal force $F_n$", **limit)
-    else:
-        forces.plot(time, most, label=name, **limit)
-        forces.plot(time, -most, **limit)
+    # With one coefficient and without adhesion.
+    usual = np.allclose(course["limit"], np.abs(course["normal_force"]), atol=1e-12)
+    name = "friction limit $\\pm F_n$" if usual else "friction limit"
+    forces.plot(time, course["limit"], label=name, **limit)
+    forces.plot(time, -course["limit"], **limit)
     rows: list[tuple[Any, str, str, Any]] = [
         (forces, "tangential_force", "tangential force $F_t/\\mu$", {"color": COLOURS[0]}),
         (velocities, "velocity", "tangential velocity $w$", {"color": COLOURS[1]}),

@@ -74,7 +74,7 @@ impl Collision {
         }
         let times = times.map(|times| numbers(&times)).transpose()?;
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
-        let rows: Vec<[f64; 7]> = match times {
+        let rows: Vec<[f64; 8]> = match times {
             Some(times) => {
                 // The course may end a rounding before the contact does.
                 let (end, contact_time) = (history.duration(), self.result.contact_time);
@@ -92,7 +92,7 @@ impl Collision {
         };
         let count = rows.len();
         let flat: Vec<f64> = rows.into_iter().flatten().collect();
-        flat.into_pyarray(py).reshape([count, 7])
+        flat.into_pyarray(py).reshape([count, 8])
     }
 
     /// Derivatives of ε_n, ε_t, w, the contact time and the times of switches: a row for each, with
@@ -128,7 +128,7 @@ impl Collision {
     }
 }
 
-fn row(moment: &Snapshot) -> [f64; 7] {
+fn row(moment: &Snapshot) -> [f64; 8] {
     let Snapshot {
         time,
         compression,
@@ -136,14 +136,15 @@ fn row(moment: &Snapshot) -> [f64; 7] {
         normal_force,
         spring,
         tangential_force,
+        limit,
         velocity,
     } = *moment;
-    [time, compression, normal_velocity, normal_force, spring, tangential_force, velocity]
+    [time, compression, normal_velocity, normal_force, spring, tangential_force, velocity, limit]
 }
 
 /// A moment at which there is no contact.
-fn outside(time: f64) -> [f64; 7] {
-    let mut row = [f64::NAN; 7];
+fn outside(time: f64) -> [f64; 8] {
+    let mut row = [f64::NAN; 8];
     row[0] = time;
     row
 }
