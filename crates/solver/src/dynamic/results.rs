@@ -141,8 +141,8 @@ pub struct DynamicRun<Mode> {
     pub state: Vec<f64>,
     /// Whether every guard was decided by bounds. It is false if guards of a black box were active:
     /// they are sampled, so that one that changes faster than the solution may have fired unseen. A
-    /// [`ReadableDynamic`](crate::dynamic::ReadableDynamic) has decided guards. It is false too if a
-    /// reset has left a guard so close to its zero that the errors of events may have moved it.
+    /// [`ReadableDynamic`](crate::dynamic::ReadableDynamic) has decided guards. It is false too if
+    /// a reset has left a guard so close to its zero that the errors of events may have moved it.
     pub decided: bool,
     /// The work done by the run.
     pub statistics: Statistics,

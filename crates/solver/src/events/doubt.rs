@@ -161,7 +161,8 @@ impl<S: System> Doubt<'_, S> {
         slope
     }
 
-    /// The error of a place where the guard has crossed zero with this `slope`, beyond that of time.
+    /// The error of a place where the guard has crossed zero with this `slope`, beyond that of
+    /// time.
     pub(crate) fn error(&mut self, (s, y): (f64, &S::State), slope: f64) -> f64 {
         let hidden = self.hidden((s, y), (s.abs(), y));
         let residual = self.room.value(self.system, self.at, s, y).abs();

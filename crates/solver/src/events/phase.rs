@@ -22,8 +22,8 @@ pub(crate) fn near_zero(drift: f64, elapsed: f64) -> f64 {
     NEAR_ZERO.max(16.0 * drift / elapsed)
 }
 
-/// The time in which a state with this slope moves by its last digit. It is longer than the rounding
-/// of times that are close to 0.
+/// The time in which a state with this slope moves by its last digit. It is longer than the
+/// rounding of times that are close to 0.
 pub(crate) fn digit<V: Store>(y: &V, slope: &V) -> f64 {
     let size = |of: &V| of.parts().iter().fold(0.0_f64, |size, value| size.max(value.abs()));
     let time = f64::EPSILON * size(y) / size(slope);

@@ -68,8 +68,8 @@ fn a_stair_is_an_error_of_the_place_even_where_it_shows_no_noise() {
     assert!(refused < 10, "{refused}");
 }
 
-/// Behind the zero of a guard with stairs, another mode is valid from a limit on, which lies at that
-/// zero or beyond it by a gap. Where the limit is violated, the count goes up.
+/// Behind the zero of a guard with stairs, another mode is valid from a limit on, which lies at
+/// that zero or beyond it by a gap. Where the limit is violated, the count goes up.
 struct Valid {
     place: f64,
     offset: f64,
