@@ -137,6 +137,7 @@ fn row(moment: &Snapshot) -> [f64; 7] {
         spring,
         tangential_force,
         velocity,
+        ..
     } = *moment;
     [time, compression, normal_velocity, normal_force, spring, tangential_force, velocity]
 }
