@@ -260,12 +260,12 @@ impl CollisionPlane {
 
     /// The collisions, integrated as for any law, with one more boundary: where |ε_t| is 1.
     pub fn gaining(self) -> CollisionFamily {
-        CollisionFamily::Gaining(GainingFamily::new(self))
+        CollisionFamily::Gaining(GainingFamily::new(&self))
     }
 
     /// The collisions, integrated as for any law.
     fn general(self) -> GeneralFamily {
-        GeneralFamily::new(self, precise())
+        GeneralFamily::new(&self, precise())
     }
 
     /// The contact at the lower ends of both parameters.

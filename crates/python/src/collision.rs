@@ -138,6 +138,7 @@ fn row(moment: &Snapshot) -> [f64; 8] {
         tangential_force,
         limit,
         velocity,
+        ..
     } = *moment;
     [time, compression, normal_velocity, normal_force, spring, tangential_force, velocity, limit]
 }

@@ -25,7 +25,7 @@ pub struct GainingFamily(GeneralFamily);
 
 impl GainingFamily {
     /// The collisions of a plane, integrated as for any law.
-    pub(super) fn new(plane: CollisionPlane) -> Self {
+    pub(super) fn new(plane: &CollisionPlane) -> Self {
         Self(plane.general())
     }
 

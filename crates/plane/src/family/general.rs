@@ -60,7 +60,7 @@ const BESIDE: [(f64, f64); 4] = [(10.0, 0.0), (-10.0, 0.0), (0.0, 10.0), (0.0, -
 
 impl GeneralFamily {
     /// The family, with options for every run.
-    pub(super) fn new(plane: CollisionPlane, options: Options) -> Self {
+    pub(super) fn new(plane: &CollisionPlane, options: Options) -> Self {
         let motions = plane.normal_motions();
         let stiffest = motions[0].kappa().max(motions[1].kappa());
         let oscillations = stiffest.sqrt().min(1e5);
@@ -78,7 +78,7 @@ impl GeneralFamily {
                 _ => span = f64::INFINITY,
             }
         }
-        Self { plane, options: Options { max_steps, ..options }, span }
+        Self { plane: *plane, options: Options { max_steps, ..options }, span }
     }
 
     fn system(&self, point: &Point) -> GeneralContact {

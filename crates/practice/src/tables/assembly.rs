@@ -62,7 +62,7 @@ pub fn arrays(
     let filled = slabs.into_par_iter().map(|slab| {
         let middle = f64::midpoint(slab.low, slab.high);
         let stack =
-            Stack { bound, grid: graph_grid, ..Stack::at(&boundaries, division.plane, middle) };
+            Stack { bound, grid: graph_grid, ..Stack::at(&boundaries, &division.plane, middle) };
         let mut filled = Vec::new();
         let result = task.fill(slab, &stack, &mut filled);
         done();

@@ -71,11 +71,11 @@ impl Slab {
 
 impl<'a> Stack<'a> {
     /// The boundaries of a plane at `x`.
-    pub fn at(boundaries: &'a Boundaries, plane: CollisionPlane, x: f64) -> Self {
+    pub fn at(boundaries: &'a Boundaries, plane: &CollisionPlane, x: f64) -> Self {
         let chains = boundaries.chains.iter().filter(|chain| chain.covers(x));
         let mut chains: Vec<&Chain> = chains.collect();
         chains.sort_by(|one, other| one.y_at(x).total_cmp(&other.y_at(x)));
-        Self { chains, plane, bound: 0.0, grid: 0 }
+        Self { chains, plane: *plane, bound: 0.0, grid: 0 }
     }
 
     /// The graphs of a slab, upwards. The first and the last are the edges of the window. `None` if
