@@ -3,8 +3,8 @@
 use crate::curve::{Vertex, VertexKind};
 use crate::family::Family;
 use crate::tracing::corrector::crossing;
-use crate::tracing::margins::Lines;
 use crate::tracing::margins::line::{Place, Reach};
+use crate::tracing::margins::{Lines, Located, Solved};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
@@ -31,27 +31,37 @@ impl<F: Family> Lines<'_, F> {
         &self,
         index: usize,
         end: usize,
-        vertices: &mut Vec<Vertex<F::Margin>>,
+        vertices: &mut Vec<Located<F::Margin>>,
     ) -> Traced<usize, F> {
         let lengths = self.runs.lengths;
         let tip = self.all[index].tip(end);
-        if let Some(ahead) = self.touched_ahead(index, end, vertices) {
+        let beside = self.nearest(index, &tip);
+        let [x, y] = [tip.x, tip.y].map(f64::to_bits);
+        let mut solved = self.once([x, y, end as u64, 0, 1], || self.own_end(index, end))?;
+        if solved.is_none()
+            && let Some((other, place, distance)) = beside
+        {
+            let reach = (100.0 * distance).max(lengths.touch).min(lengths.close);
+            let foot = self.all[other].at(place);
+            let foot = [foot.x, foot.y].map(f64::to_bits);
+            solved = self.once([x, y, foot[0], foot[1], 2 + end as u64], || {
+                Ok(match self.root_end(index, end, (other, place))? {
+                    Some(found) => Some(found),
+                    None => self.common_zero(index, end, other, place, reach)?,
+                })
+            })?;
+        }
+        if solved.is_none()
+            && let Some(ahead) = self.touched_ahead(index, end, vertices)
+        {
             return Ok(ahead);
         }
-        let beside = self.nearest(index, &tip);
-        let solved = match beside {
-            Some((other, place, distance)) => {
-                let reach = (100.0 * distance).max(lengths.touch).min(lengths.close);
-                self.common_zero(index, end, other, place, reach)?
-            }
-            None => None,
-        };
-        let aim = solved.unwrap_or(tip);
-        let away = |vertex: &Vertex<F::Margin>| (vertex.point - aim).norm();
+        let aim = solved.map_or(tip, |(place, _)| place);
+        let away = |it: &Located<F::Margin>| (it.vertex.point - aim).norm();
         let known = vertices.iter().enumerate().map(|(vertex, it)| (vertex, away(it)));
         let known = known.min_by(|one, other| one.1.total_cmp(&other.1));
         let snaps = match (solved, beside) {
-            (Some(_), _) => 2.0 * lengths.same,
+            (Some((_, error)), _) => error + lengths.same,
             // The error of a place that was lost is like its distance from the other line.
             (None, Some((_, _, distance))) => 10.0 * distance + lengths.piece,
             (None, None) => lengths.close,
@@ -63,8 +73,9 @@ impl<F: Family> Lines<'_, F> {
         }
         let margins = vec![self.all[index].margin.clone()];
         let foot = beside.map(|(other, place, _)| self.all[other].at(place));
-        let point = solved.or(foot).unwrap_or(tip);
-        vertices.push(Vertex { point, kind: VertexKind::Degenerate, margins });
+        let (point, error) = solved.unwrap_or((foot.unwrap_or(tip), lengths.same));
+        let vertex = Vertex { point, kind: VertexKind::Degenerate, margins };
+        vertices.push(Located { vertex, error: error.max(lengths.same) });
         Ok(vertices.len() - 1)
     }
 
@@ -87,9 +98,9 @@ impl<F: Family> Lines<'_, F> {
         other: usize,
         place: Place,
         reach: f64,
-    ) -> Traced<Option<Point>, F> {
+    ) -> Traced<Option<Solved>, F> {
         let (line, passing) = (&self.all[index], &self.all[other]);
-        let own = &line.names[if end == 0 { 0 } else { line.pieces() }];
+        let own = line.name(end);
         let names = [own, &passing.names[place.piece]];
         if names[0] == names[1] {
             return Ok(None);
@@ -98,7 +109,6 @@ impl<F: Family> Lines<'_, F> {
         let found = crossing(&self.runs, names, &tip, &along, self.runs.lengths.beyond, reach)?;
         let on = |point: &Point| passing.distance(point, 2.0 * self.runs.lengths.same).is_some();
         Ok(found.filter(|(point, error)| *error <= self.runs.lengths.same && on(point)))
-            .map(|found| found.map(|(point, _)| point))
     }
 
     /// The vertex ahead of a line that was lost because it touches another one. The square root of
@@ -107,7 +117,7 @@ impl<F: Family> Lines<'_, F> {
         &self,
         index: usize,
         end: usize,
-        vertices: &[Vertex<F::Margin>],
+        vertices: &[Located<F::Margin>],
     ) -> Option<usize> {
         let lengths = self.runs.lengths;
         let line = &self.all[index];
@@ -124,7 +134,7 @@ impl<F: Family> Lines<'_, F> {
                 continue;
             }
             // A line that does not touch it is lost right before it.
-            let here = vertices.iter().any(|it| (it.point - tip).norm() < 10.0 * close);
+            let here = vertices.iter().any(|it| (it.vertex.point - tip).norm() < 10.0 * close);
             if here {
                 continue;
             }
@@ -136,8 +146,8 @@ impl<F: Family> Lines<'_, F> {
             let Some((way, distance)) = far else { continue };
             let left = way * close.sqrt() / (distance.sqrt() - close.sqrt());
             let ahead = vertices.iter().enumerate().filter_map(|(vertex, it)| {
-                let step = it.point - tip;
-                let (away, on) = (step.norm(), passing.distance(&it.point, lengths.touch));
+                let step = it.vertex.point - tip;
+                let (away, on) = (step.norm(), passing.distance(&it.vertex.point, lengths.touch));
                 let alike = away > 0.5 * left && away < 2.0 * left && step.dot(&forward) > 0.0;
                 (alike && on.is_some()).then(|| (vertex, (away - left).abs()))
             });

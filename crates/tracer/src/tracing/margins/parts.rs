@@ -2,7 +2,7 @@
 
 use crate::curve::{Curve, Node, Vertex};
 use crate::family::Family;
-use crate::lengths::angle;
+use crate::lengths::{Lengths, angle};
 use crate::tracing::fit::mirrored;
 use crate::tracing::margins::line::{Cut, Line, Place};
 use crate::tracing::margins::{Arranged, Lines};
@@ -70,11 +70,11 @@ impl<F: Family> Lines<'_, F> {
         parts: &[Part],
         vertices: Vec<Vertex<F::Margin>>,
     ) -> Traced<Arranged<F>, F> {
-        let mut doubts = Vec::new();
+        let (mut doubts, mut strips) = (Vec::new(), Vec::new());
         let mut all = Vec::new();
         for part in parts {
             self.runs.go_on()?;
-            let sides = self.sides(part, &mut doubts)?;
+            let sides = self.sides(part, &mut doubts, &mut strips)?;
             if sides[0] != sides[1] {
                 let length = part.length(&self.all[part.line]);
                 all.push((length, all.len(), Seen { part: *part, sides }));
@@ -122,12 +122,18 @@ impl<F: Family> Lines<'_, F> {
             vertex.margins.sort();
             vertex.margins.dedup();
         }
-        Ok(Arranged { curves, vertices: kept, doubts })
+        Ok(Arranged { curves, vertices: kept, doubts, strips })
     }
 
     /// The labels on the left and on the right of a part, where it is farthest from other lines.
-    /// Places where it has others are `doubts`.
-    fn sides(&mut self, part: &Part, doubts: &mut Vec<Point>) -> Traced<[F::Label; 2], F> {
+    /// Places where it has others are `doubts`, and segments beside it on which the label changes
+    /// are `strips`.
+    fn sides(
+        &mut self,
+        part: &Part,
+        doubts: &mut Vec<Point>,
+        strips: &mut Vec<[Point; 2]>,
+    ) -> Traced<[F::Label; 2], F> {
         let (lengths, line) = (self.runs.lengths, &self.all[part.line]);
         let length = part.length(line);
         let places = SHARES.map(|share| part.place(line, share));
@@ -156,8 +162,31 @@ impl<F: Family> Lines<'_, F> {
                     doubts.extend([*place, point]);
                 }
             }
+            if sides[0] != sides[1] {
+                for (width, place, tangent) in &places[..3] {
+                    strips.extend(self.strips(*width, place, tangent)?);
+                }
+            }
         }
         Ok(sides)
+    }
+
+    /// The segments beside a place, left and right, on which the label changes up to other lines
+    /// that are so far away.
+    fn strips(&mut self, width: f64, point: &Point, tangent: &Point) -> Traced<Vec<[Point; 2]>, F> {
+        let options = &self.runs.options;
+        let near = options.offset.max(4.0 * options.interpolation);
+        let left = Point::new(-tangent.y, tangent.x);
+        let mut found = Vec::new();
+        if 0.3 * width > 2.0 * near {
+            for normal in [left, -left] {
+                let ends = [near, 0.3 * width].map(|away| point + normal * away);
+                if self.label(&ends[0])? != self.label(&ends[1])? {
+                    found.push(ends);
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// The labels on the left and on the right of a place that is so far from other lines.
@@ -257,9 +286,10 @@ impl<F: Family> Lines<'_, F> {
             point: vertices[cut.vertex].point,
             tangent: line.tangent(cut.place),
         });
-        let solved = self.runs.lengths.solved;
+        let Lengths { solved, piece, .. } = self.runs.lengths;
+        // A curve has no nodes close to its ends, where margins may be flat.
         let apart = |node: &Node| {
-            [start, end].iter().all(|other| (node.point - other.point).norm() > solved)
+            [start, end].iter().all(|other| (node.point - other.point).norm() > piece)
         };
         let between = (from.place.piece + 1..=to.place.piece).map(|index| *line.node(index));
         let mut nodes: Vec<Node> = between.filter(apart).collect();
