@@ -27,7 +27,7 @@ use crate::options::{TraceError, TraceOptions};
 use crate::tracing::cut::cut;
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::margins::line::{Line, Reach};
-use crate::tracing::network::{NetworkOf, TraceStatistics};
+use crate::tracing::network::{NetworkOf, TraceStatistics, Unresolved};
 use crate::tracing::runs::{Runs, Sampled, Traced, checked};
 use crate::tracing::seed::Seed;
 use crate::tracing::tracer::island;
@@ -83,11 +83,10 @@ pub(crate) struct Located<M> {
 /// followed without labels, divided where they meet, and kept where the labels on their sides
 /// differ.
 ///
-/// [`trace`](crate::trace()) follows boundaries by their labels, knows the accuracy of each vertex,
-/// and solves for the cusps that the family knows; lines only come close to these. This way tells
-/// boundaries apart that touch, between which a strip is narrower than labels can tell. Neither
-/// finds every boundary of every family: verify the regions. A [`Surveyor`](crate::Surveyor) does,
-/// and takes this way where the other one leaves a doubt.
+/// [`trace`](crate::trace()) follows boundaries by their labels. This way tells boundaries apart
+/// that touch, between which a strip is narrower than labels can tell. Neither finds every boundary
+/// of every family: verify the regions. A [`Surveyor`](crate::Surveyor) does, and takes this way
+/// where the other one leaves a doubt.
 ///
 /// # Errors
 /// An option is out of its range, the window is not a rectangle, a run fails, or a margin is not a
@@ -126,7 +125,8 @@ impl<'f, F: Family> Lines<'f, F> {
         })
     }
 
-    /// Whether boundaries may end in cusps that the family knows. Lines are not extended to them.
+    /// Whether boundaries may end in cusps that the family knows. These are solved for, but their
+    /// accuracy has not been compared with that of boundaries followed by labels.
     pub fn have_cusps(&self) -> bool {
         self.curves.iter().any(|curve| !self.runs.cusps(&curve.margin).is_empty())
     }
@@ -189,8 +189,12 @@ impl<'f, F: Family> Lines<'f, F> {
 
     /// The network of the lines that runs see.
     pub fn network(&mut self) -> Traced<NetworkOf<F>, F> {
-        let unresolved = self.unfollowed();
-        let Arranged { curves, vertices, .. } = self.arranged()?;
+        let Arranged { curves, vertices, strips, .. } = self.arranged()?;
+        let mut unresolved = self.unfollowed();
+        for between in strips {
+            let labels = [self.runs.label(&between[0])?, self.runs.label(&between[1])?];
+            unresolved.push(Unresolved::Change { between, labels });
+        }
         let [free_runs, prescribed_runs] = self.runs.counts();
         let nodes = self.all.iter().map(|line| line.nodes.len()).sum();
         let statistics =

@@ -1,5 +1,6 @@
 //! The parts of lines that runs see: those with different labels on their two sides.
 
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
 use crate::family::Family;
 use crate::lengths::{Lengths, angle};
@@ -148,7 +149,9 @@ impl<F: Family> Lines<'_, F> {
         let mut places: Vec<(f64, Point, Point)> = (0..SHARES.len())
             .map(|index| {
                 let width = others.iter().map(|distances| distances[index]);
+                // Beyond an edge, lines end that labels know.
                 let width = width.fold(lengths.close, f64::min);
+                let width = width.min(self.runs.window.depth(&points[index]).max(0.0));
                 (width, points[index], line.tangent(places[index]))
             })
             .collect();
@@ -196,7 +199,7 @@ impl<F: Family> Lines<'_, F> {
         point: &Point,
         tangent: &Point,
     ) -> Traced<[F::Label; 2], F> {
-        let away = (0.3 * width).max(self.runs.lengths.same);
+        let away = (0.3 * width).max(4.0 * self.runs.options.interpolation);
         let left = Point::new(-tangent.y, tangent.x) * away;
         Ok([self.label(&(point + left))?, self.label(&(point - left))?])
     }
@@ -212,22 +215,25 @@ impl<F: Family> Lines<'_, F> {
     }
 
     /// Whether a part runs along one that is seen: two margins are one function there, or cannot be
-    /// told apart.
+    /// told apart. Two sides of a strip have the labels of their sides in opposite order.
     fn is_twin(&self, part: &Seen<F::Label>, seen: &[(usize, Seen<F::Label>)]) -> bool {
         let line = &self.all[part.part.line];
-        let points = SHARES.map(|share| line.at(part.part.place(line, share)));
+        let places = SHARES.map(|share| part.part.place(line, share));
         let [left, right] = &part.sides;
         seen.iter().any(|(_, other)| {
             let along = &self.all[other.part.line];
             let [from, to] = other.part.ends(along);
             let touch = self.runs.lengths.touch;
-            let runs_along = |point: &Point| {
-                let near = along.near(point, touch).map(|(place, _)| place);
-                near.is_some_and(|place| along.ends.is_none() || (from <= place && place <= to))
+            let runs_along = |place: &Place| {
+                let near = along.near(&line.at(*place), touch).map(|(near, _)| near);
+                near.is_some_and(|near| {
+                    let same_way = along.tangent(near).dot(&line.tangent(*place)) > 0.0;
+                    let sides = if same_way { [left, right] } else { [right, left] };
+                    let inside = along.ends.is_none() || (from <= near && near <= to);
+                    inside && other.sides.each_ref() == sides
+                })
             };
-            let same =
-                other.sides == part.sides || [right, left] == [&other.sides[0], &other.sides[1]];
-            same && other.part.line != part.part.line && points.iter().all(runs_along)
+            other.part.line != part.part.line && places.iter().all(runs_along)
         })
     }
 
@@ -286,42 +292,76 @@ impl<F: Family> Lines<'_, F> {
             point: vertices[cut.vertex].point,
             tangent: line.tangent(cut.place),
         });
-        let Lengths { solved, piece, .. } = self.runs.lengths;
-        // A curve has no nodes close to its ends, where margins may be flat.
-        let apart = |node: &Node| {
-            [start, end].iter().all(|other| (node.point - other.point).norm() > piece)
+        let Lengths { solved, piece, close, around, .. } = self.runs.lengths;
+        let numbers = from.place.piece + 1..=to.place.piece;
+        let all: Vec<Node> = numbers.clone().map(|index| *line.node(index)).collect();
+        let middles = numbers.skip(1).map(|index| line.cubic(index - 1).at(0.5));
+        let samples: Vec<Point> = all.iter().map(|node| node.point).chain(middles).collect();
+        let apart = |point: &Point, room: f64| {
+            [start, end].iter().all(|other| (point - other.point).norm() > room)
         };
-        let between = (from.place.piece + 1..=to.place.piece).map(|index| *line.node(index));
-        let mut nodes: Vec<Node> = between.filter(apart).collect();
+        // At its ends, where margins may be flat, a curve has no nodes that it does not need.
+        let mut nodes = Vec::new();
+        for room in [around, close, piece] {
+            nodes = all.iter().filter(|node| apart(&node.point, room)).copied().collect();
+            let arcs = [
+                Cubic::between(&start, nodes.first().unwrap_or(&end)),
+                Cubic::between(nodes.last().unwrap_or(&start), &end),
+            ];
+            let fits = |point: &Point| {
+                let off = arcs.iter().map(|arc| arc.closest(point).1);
+                off.fold(f64::INFINITY, f64::min) <= self.runs.options.interpolation
+            };
+            if samples.iter().filter(|point| !apart(point, room)).all(fits) {
+                break;
+            }
+        }
         let is_moved =
             |cut: &Cut| (line.at(cut.place) - vertices[cut.vertex].point).norm() > solved;
         nodes.insert(0, start);
         if is_moved(&to) {
-            lead(&mut nodes, end);
+            self.lead(&mut nodes, end, part.line);
         } else {
             nodes.push(end);
         }
         if is_moved(&from) {
             let turned = |node: &Node| Node { tangent: -node.tangent, ..*node };
             nodes = nodes.iter().skip(1).rev().map(turned).collect();
-            lead(&mut nodes, turned(&start));
+            self.lead(&mut nodes, turned(&start), part.line);
             nodes = nodes.iter().rev().map(turned).collect();
         }
         nodes
     }
-}
 
-/// Leads a curve to a place that is a little farther, or beside its last node.
-fn lead(nodes: &mut Vec<Node>, end: Node) {
-    let misses = |node: &Node| node.tangent.angle(&(end.point - node.point)) > angle::PARALLEL;
-    while nodes.len() > 1 && nodes.last().is_some_and(misses) {
-        nodes.pop();
+    /// Leads a curve on a line to a place that is a little farther, or beside its last node.
+    fn lead(&self, nodes: &mut Vec<Node>, end: Node, line: usize) {
+        let misses = |node: &Node| node.tangent.angle(&(end.point - node.point)) > angle::PARALLEL;
+        while nodes.len() > 1 && nodes.last().is_some_and(misses) {
+            nodes.pop();
+        }
+        let Some(last) = nodes.last() else { return };
+        let chord = end.point - last.point;
+        let tangent = if misses(last) {
+            chord.normalize()
+        } else {
+            let circular = mirrored(&last.tangent, &chord);
+            self.beside(&end.point, &circular, line).unwrap_or(circular)
+        };
+        nodes.push(Node { point: end.point, tangent });
     }
-    let Some(last) = nodes.last() else { return };
-    let chord = end.point - last.point;
-    let tangent = mirrored(&last.tangent, &chord);
-    let tangent = if misses(last) { chord.normalize() } else { tangent };
-    nodes.push(Node { point: end.point, tangent });
+
+    /// The tangent of another line at a vertex where a line with nearly this tangent ends. It
+    /// begins there on the other one.
+    fn beside(&self, vertex: &Point, tangent: &Point, line: usize) -> Option<Point> {
+        let others = self.all.iter().enumerate().filter(|(other, _)| *other != line);
+        let tangents = others.filter_map(|(_, other)| {
+            let (place, _) = other.near(vertex, 2.0 * self.runs.lengths.same)?;
+            let along = other.tangent(place);
+            Some(along * along.dot(tangent).signum())
+        });
+        let near = tangents.filter(|along| along.angle(tangent) < angle::ORDERED);
+        near.min_by(|one, other| one.angle(tangent).total_cmp(&other.angle(tangent)))
+    }
 }
 
 /// How many parts end at each vertex.

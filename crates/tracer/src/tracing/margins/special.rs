@@ -21,9 +21,8 @@ use crate::tracing::runs::Traced;
 use crate::window::Point;
 
 impl<F: Family> Lines<'_, F> {
-    /// The place where a line that was lost ends by itself: in a cusp that the family knows, or
-    /// where the gradient of its margin vanishes.
-    pub(super) fn own_end(&self, index: usize, end: usize) -> Traced<Option<Solved>, F> {
+    /// The cusp in which a line that was lost ends, if the family knows it.
+    pub(super) fn cusp(&self, index: usize, end: usize) -> Traced<Option<Solved>, F> {
         let (runs, lengths, line) = (&self.runs, &self.runs.lengths, &self.all[index]);
         let (name, last) = (line.name(end), line.last(end));
         let mut places = Vec::new();
@@ -33,10 +32,6 @@ impl<F: Family> Lines<'_, F> {
                 crossing(runs, [&one, &two], &last.point, &last.tangent, lengths.scale, reach)?;
             places.extend(found);
         }
-        if places.is_empty() {
-            let flat = stationary(runs, name, &last.point, lengths.close, lengths.around)?;
-            places.extend(flat.map(|place| (place, lengths.same)));
-        }
         let away = |(place, _): &Solved| (place - last.point).norm();
         places.sort_by(|one, other| away(one).total_cmp(&away(other)));
         for place in places {
@@ -45,6 +40,30 @@ impl<F: Family> Lines<'_, F> {
             }
         }
         Ok(None)
+    }
+
+    /// The place where a line that was lost ends because the gradient of its margin vanishes.
+    pub(super) fn flat(&self, index: usize, end: usize) -> Traced<Option<Solved>, F> {
+        let (runs, lengths, line) = (&self.runs, &self.runs.lengths, &self.all[index]);
+        let (name, last) = (line.name(end), line.last(end));
+        let found = stationary(runs, name, &last.point, lengths.close, lengths.around)?;
+        let Some(place) = found else { return Ok(None) };
+        // Differences over a long step may be differences of errors.
+        let slope = |point: &Point| -> Traced<Option<f64>, F> {
+            let gradient = runs.gradient(point, name, &last.tangent, lengths.scale)?;
+            Ok(gradient.map(|gradient| gradient.norm()))
+        };
+        let away = |point: &Point| (point - last.point).norm() > lengths.close;
+        let mut points = line.nodes.iter().map(|node| node.point).filter(away);
+        let Some(before) = (if end == 0 { points.next() } else { points.next_back() }) else {
+            return Ok(None);
+        };
+        let flattens = match (slope(&before)?, slope(&place)?) {
+            (Some(before), Some(here)) => here <= 0.1 * before,
+            _ => true,
+        };
+        let leads = flattens && self.leads_to(line, end, &place)?;
+        Ok(leads.then_some((place, lengths.same)))
     }
 
     /// Whether a line that was lost leads to a place ahead: the margin is small on the way, as far
@@ -59,9 +78,12 @@ impl<F: Family> Lines<'_, F> {
         if chord.dot(&last.tangent) < 0.0 {
             return Ok(false);
         }
-        let gradient = runs.gradient(&last.point, name, &last.tangent, chord.norm())?;
-        let Some(gradient) = gradient else { return Ok(false) };
         let tip = chord.norm() <= lengths.close;
+        let gradient = runs.gradient(&last.point, name, &last.tangent, chord.norm())?;
+        // The margin may exist in a wedge that is narrower than differences.
+        let Some(gradient) = gradient else {
+            return Ok(tip && chord.angle(&last.tangent) < angle::PARALLEL);
+        };
         let error = if tip { lengths.same } else { runs.options.interpolation };
         let floor = error * gradient.norm() + runs.options.noise;
         let arc = Cubic::between(
@@ -99,15 +121,16 @@ impl<F: Family> Lines<'_, F> {
         let Some(gradient) = gradient else { return Ok(None) };
         let mut best: Option<(f64, Point)> = None;
         for side in [1.0, -1.0] {
-            let root = Root { runs, own, graze, foot, along, gradient, side };
-            let Some((place, error)) = root.place()? else { continue };
-            // The line goes on beside the other one, and does not come back.
-            let ahead = place > -lengths.piece && place < lengths.scale;
-            if ahead
-                && best.is_none_or(|(least, _)| error < least)
-                && let Some(point) = root.point(place)?
-            {
-                best = Some((error, point));
+            let mut root = Root { runs, own, graze, foot, along, gradient, side };
+            // From the place itself, the next one has its error only.
+            for least in [-lengths.piece, -lengths.close] {
+                let Some((place, error)) = root.place()? else { break };
+                // The line goes on beside the other one, and does not come back.
+                let Some(point) = root.point(place)?.filter(|_| place > least) else { break };
+                if best.is_none_or(|(least, _)| error < least) {
+                    best = Some((error, point));
+                }
+                root.foot = point;
             }
         }
         Ok(best.map(|(error, point)| (point, error)))
