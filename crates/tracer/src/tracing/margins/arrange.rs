@@ -56,7 +56,7 @@ impl<F: Family> Lines<'_, F> {
                 let margins = touch.lines.map(|line| self.all[line].margin.clone()).to_vec();
                 let (point, kind) = (self.inside(&touch.point), VertexKind::Crossing);
                 let vertex = Vertex { point, kind, margins };
-                self.keep(Located { vertex, error: lengths.same }, &mut vertices);
+                keep(Located { vertex, error: lengths.same }, &mut vertices);
                 touches.push(touch);
             }
         }
@@ -67,7 +67,7 @@ impl<F: Family> Lines<'_, F> {
                 touch.lines == meeting.lines && apart < 10.0 * lengths.close
             });
             if !touches && let Some(vertex) = self.crossing_vertex(&meeting)? {
-                self.keep(vertex, &mut vertices);
+                keep(vertex, &mut vertices);
             }
         }
         for [index, end] in self.open_ends() {
@@ -120,23 +120,7 @@ impl<F: Family> Lines<'_, F> {
         let corner = window.corners().contains(&point);
         let kind = if corner { VertexKind::WindowCorner } else { VertexKind::WindowEdge };
         let vertex = Vertex { point, kind, margins: vec![line.margin.clone()] };
-        self.keep(Located { vertex, error: self.runs.lengths.solved }, vertices)
-    }
-
-    /// The index of a vertex, which may be a known one.
-    pub(super) fn keep(
-        &self,
-        new: Located<F::Margin>,
-        vertices: &mut Vec<Located<F::Margin>>,
-    ) -> usize {
-        let near = |it: &Located<F::Margin>| {
-            (it.vertex.point - new.vertex.point).norm() < it.error + new.error
-        };
-        let known = vertices.iter().position(near);
-        known.unwrap_or_else(|| {
-            vertices.push(new);
-            vertices.len() - 1
-        })
+        keep(Located { vertex, error: self.runs.lengths.solved }, vertices)
     }
 
     /// A place that is solved for once, from these numbers.
@@ -213,4 +197,14 @@ impl<F: Family> Lines<'_, F> {
         }
         parts
     }
+}
+
+/// The index of a vertex, which may be a known one.
+fn keep<M>(new: Located<M>, vertices: &mut Vec<Located<M>>) -> usize {
+    let near = |it: &Located<M>| (it.vertex.point - new.vertex.point).norm() < it.error + new.error;
+    let known = vertices.iter().position(near);
+    known.unwrap_or_else(|| {
+        vertices.push(new);
+        vertices.len() - 1
+    })
 }

@@ -141,10 +141,11 @@ impl<F: Family> Lines<'_, F> {
         let points = places.map(|place| line.at(place));
         let others = self.all.iter().enumerate().filter(|(index, _)| *index != part.line);
         // Lines that are one along the whole part do not make it narrow.
+        let same = 4.0 * self.runs.options.interpolation;
         let others: Vec<[f64; 7]> = others
             .map(|(_, other)| points.map(|point| other.distance(&point, lengths.close)))
             .map(|distances| distances.map(|distance| distance.unwrap_or(lengths.close)))
-            .filter(|distances| distances.iter().any(|distance| *distance > 2.0 * lengths.same))
+            .filter(|distances| distances.iter().any(|distance| *distance > same))
             .collect();
         let mut places: Vec<(f64, Point, Point)> = (0..SHARES.len())
             .map(|index| {
@@ -292,30 +293,8 @@ impl<F: Family> Lines<'_, F> {
             point: vertices[cut.vertex].point,
             tangent: line.tangent(cut.place),
         });
-        let Lengths { solved, piece, close, around, .. } = self.runs.lengths;
-        let numbers = from.place.piece + 1..=to.place.piece;
-        let all: Vec<Node> = numbers.clone().map(|index| *line.node(index)).collect();
-        let middles = numbers.skip(1).map(|index| line.cubic(index - 1).at(0.5));
-        let samples: Vec<Point> = all.iter().map(|node| node.point).chain(middles).collect();
-        let apart = |point: &Point, room: f64| {
-            [start, end].iter().all(|other| (point - other.point).norm() > room)
-        };
-        // At its ends, where margins may be flat, a curve has no nodes that it does not need.
-        let mut nodes = Vec::new();
-        for room in [around, close, piece] {
-            nodes = all.iter().filter(|node| apart(&node.point, room)).copied().collect();
-            let arcs = [
-                Cubic::between(&start, nodes.first().unwrap_or(&end)),
-                Cubic::between(nodes.last().unwrap_or(&start), &end),
-            ];
-            let fits = |point: &Point| {
-                let off = arcs.iter().map(|arc| arc.closest(point).1);
-                off.fold(f64::INFINITY, f64::min) <= self.runs.options.interpolation
-            };
-            if samples.iter().filter(|point| !apart(point, room)).all(fits) {
-                break;
-            }
-        }
+        let solved = self.runs.lengths.solved;
+        let (mut nodes, [start, end]) = self.inner(line, [from, to], [start, end]);
         let is_moved =
             |cut: &Cut| (line.at(cut.place) - vertices[cut.vertex].point).norm() > solved;
         nodes.insert(0, start);
@@ -331,6 +310,44 @@ impl<F: Family> Lines<'_, F> {
             nodes = nodes.iter().rev().map(turned).collect();
         }
         nodes
+    }
+
+    /// The nodes that a part needs between its ends, and its ends. Close to them, where margins may
+    /// be flat, nodes and tangents have errors. A part has none there if one cubic shows as much.
+    fn inner(
+        &self,
+        line: &Line<F::Margin>,
+        [from, to]: [Cut; 2],
+        ends: [Node; 2],
+    ) -> (Vec<Node>, [Node; 2]) {
+        let Lengths { piece, close, around, .. } = self.runs.lengths;
+        let numbers = from.place.piece + 1..=to.place.piece;
+        let all: Vec<Node> = numbers.clone().map(|index| *line.node(index)).collect();
+        let middles = numbers.skip(1).map(|index| line.cubic(index - 1).at(0.5));
+        let samples: Vec<Point> = all.iter().map(|node| node.point).chain(middles).collect();
+        let apart =
+            |point: &Point, room: f64| ends.iter().all(|end| (point - end.point).norm() > room);
+        let beyond = |room: f64| -> Vec<Node> {
+            all.iter().filter(|node| apart(&node.point, room)).copied().collect()
+        };
+        for room in [around, close] {
+            let nodes = beyond(room);
+            let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else { continue };
+            let back = -mirrored(&-first.tangent, &(ends[0].point - first.point));
+            let forth = mirrored(&last.tangent, &(ends[1].point - last.point));
+            let circular = [Node { tangent: back, ..ends[0] }, Node { tangent: forth, ..ends[1] }];
+            for ends in [ends, circular] {
+                let arcs = [Cubic::between(&ends[0], first), Cubic::between(last, &ends[1])];
+                let fits = |point: &Point| {
+                    let off = arcs.iter().map(|arc| arc.closest(point).1);
+                    off.fold(f64::INFINITY, f64::min) <= self.runs.options.interpolation
+                };
+                if samples.iter().filter(|point| !apart(point, room)).all(fits) {
+                    return (nodes, ends);
+                }
+            }
+        }
+        (beyond(piece), ends)
     }
 
     /// Leads a curve on a line to a place that is a little farther, or beside its last node.
