@@ -240,7 +240,7 @@ impl<'w, E> Surveyor<'w, E> {
     ///
     /// If something is in doubt then, the window is traced by margins. If nothing is in doubt after
     /// that, this is the result, with the lines of the margins, unless they may end in cusps that
-    /// the family knows: only the first way solves for these.
+    /// the family knows.
     fn finish<'f, D: Draft>(
         &self,
         draft: &'f D,

@@ -14,17 +14,20 @@ mod ends;
 mod line;
 mod meet;
 mod parts;
+mod special;
 mod walk;
 
+use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 
 use crate::curve::{Curve, Vertex};
 use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::{TraceError, TraceOptions};
+use crate::tracing::cut::cut;
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::margins::line::{Line, Reach};
-use crate::tracing::network::{NetworkOf, TraceStatistics};
+use crate::tracing::network::{NetworkOf, TraceStatistics, Unresolved};
 use crate::tracing::runs::{Runs, Sampled, Traced, checked};
 use crate::tracing::seed::Seed;
 use crate::tracing::tracer::island;
@@ -41,6 +44,8 @@ const EDGE: u32 = 5;
 /// A search for the zero sets of margins in a window.
 pub(crate) struct Lines<'f, F: Family> {
     runs: Runs<'f, F>,
+    /// The window of the caller. The window of the runs is larger.
+    window: Window,
     all: Vec<Line<F::Margin>>,
     /// The number of lines that were found, or found to be longer.
     changes: usize,
@@ -49,6 +54,8 @@ pub(crate) struct Lines<'f, F: Family> {
     /// The places around which lines were searched for.
     visited: BTreeSet<[u64; 2]>,
     seeds: usize,
+    /// Places that were solved for, with their errors, by what they were solved from.
+    solved: RefCell<HashMap<[u64; 5], Option<Solved>>>,
     /// The curves of the last network.
     curves: Vec<Curve<F::Label, F::Margin>>,
 }
@@ -59,17 +66,27 @@ pub(crate) struct Arranged<F: Family> {
     pub vertices: Vec<Vertex<F::Margin>>,
     /// Places around which lines are missing, or may be.
     pub doubts: Vec<Point>,
+    /// Segments on which a line is missing: beside a line, labels at two distances differ.
+    pub strips: Vec<[Point; 2]>,
+}
+
+/// A place that was solved for, and its largest error.
+pub(crate) type Solved = (Point, f64);
+
+/// A vertex, and the largest error of its place.
+pub(crate) struct Located<M> {
+    pub vertex: Vertex<M>,
+    pub error: f64,
 }
 
 /// Traces every boundary of a family in a window by its margins alone: zero sets of margins are
 /// followed without labels, divided where they meet, and kept where the labels on their sides
 /// differ.
 ///
-/// [`trace`](crate::trace()) follows boundaries by their labels, knows the accuracy of each vertex,
-/// and solves for the cusps that the family knows; lines only come close to these. This way tells
-/// boundaries apart that touch, between which a strip is narrower than labels can tell. Neither
-/// finds every boundary of every family: verify the regions. A [`Surveyor`](crate::Surveyor) does,
-/// and takes this way where the other one leaves a doubt.
+/// [`trace`](crate::trace()) follows boundaries by their labels. This way tells boundaries apart
+/// that touch, between which a strip is narrower than labels can tell. Neither finds every boundary
+/// of every family: verify the regions. A [`Surveyor`](crate::Surveyor) does, and takes this way
+/// where the other one leaves a doubt.
 ///
 /// # Errors
 /// An option is out of its range, the window is not a rectangle, a run fails, or a margin is not a
@@ -85,25 +102,31 @@ pub fn trace_by_margins<F: Family>(
 }
 
 impl<'f, F: Family> Lines<'f, F> {
-    /// A search that has found nothing yet. Lines end on the edges of the window.
+    /// A search that has found nothing yet. Lines are followed a little [beyond] the window.
+    ///
+    /// [beyond]: TraceOptions::beyond
     pub fn new(
         family: &'f F,
         window: &Window,
         options: &TraceOptions,
         watch: Watch<'f>,
     ) -> Traced<Self, F> {
+        let runs = Runs::new(family, *window, *options)?.watched(watch);
         Ok(Self {
-            runs: Runs::new(family, *window, *options)?.watched(watch),
+            runs: runs.within(window.with_room(options.beyond)),
+            window: *window,
             all: Vec::new(),
             changes: 0,
             labels: HashMap::new(),
             visited: BTreeSet::new(),
             seeds: 0,
+            solved: RefCell::default(),
             curves: Vec::new(),
         })
     }
 
-    /// Whether boundaries may end in cusps that the family knows. Lines are not extended to them.
+    /// Whether boundaries may end in cusps that the family knows. These are solved for, but their
+    /// accuracy has not been compared with that of boundaries followed by labels.
     pub fn have_cusps(&self) -> bool {
         self.curves.iter().any(|curve| !self.runs.cusps(&curve.margin).is_empty())
     }
@@ -166,15 +189,21 @@ impl<'f, F: Family> Lines<'f, F> {
 
     /// The network of the lines that runs see.
     pub fn network(&mut self) -> Traced<NetworkOf<F>, F> {
-        let unresolved = self.unfollowed();
-        let Arranged { curves, vertices, .. } = self.arranged()?;
+        let Arranged { curves, vertices, strips, .. } = self.arranged()?;
+        let mut unresolved = self.unfollowed();
+        for between in strips {
+            let labels = [self.runs.label(&between[0])?, self.runs.label(&between[1])?];
+            unresolved.push(Unresolved::Change { between, labels });
+        }
         let [free_runs, prescribed_runs] = self.runs.counts();
         let nodes = self.all.iter().map(|line| line.nodes.len()).sum();
         let statistics =
             TraceStatistics { free_runs, prescribed_runs, nodes, rejected: 0, seeds: self.seeds };
         let window = self.runs.window;
-        self.curves.clone_from(&curves);
-        Ok(NetworkOf::<F> { window, curves, vertices, statistics, unresolved })
+        let whole = NetworkOf::<F> { window, curves, vertices, statistics, unresolved };
+        let network = cut(&self.runs, &whole, &self.window);
+        self.curves.clone_from(&network.curves);
+        Ok(network)
     }
 
     /// The places where the curves of the last network are extremal in a coordinate.
@@ -205,11 +234,18 @@ impl<'f, F: Family> Lines<'f, F> {
     fn complete(&mut self) -> Traced<(), F> {
         for _ in 0..ROUNDS {
             let before = self.changes;
-            let Arranged { vertices, doubts, .. } = self.arranged()?;
+            let Arranged { vertices, doubts, strips, .. } = self.arranged()?;
             let inside = vertices.iter().filter(|vertex| !vertex.kind.is_on_window());
             let places: Vec<Point> = inside.map(|vertex| vertex.point).chain(doubts).collect();
             let ends = self.lost_ends();
-            self.runs.watch.report(Progress::Begin { steps: ends.len() + places.len() });
+            let steps = ends.len() + strips.len() + places.len();
+            self.runs.watch.report(Progress::Begin { steps });
+            for strip in strips {
+                if self.is_new(&strip[1]) {
+                    self.search(strip)?;
+                }
+                self.runs.watch.report(Progress::Advance { steps: 1 });
+            }
             for [index, end] in ends {
                 self.look_beside(index, end)?;
                 self.runs.watch.report(Progress::Advance { steps: 1 });

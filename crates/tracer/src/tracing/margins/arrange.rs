@@ -3,11 +3,11 @@
 use crate::curve::{Vertex, VertexKind};
 use crate::family::Family;
 use crate::lengths::angle;
-use crate::tracing::corrector::crossing;
+use crate::tracing::corrector::{crossing, stationary};
 use crate::tracing::margins::line::{Cut, Line, Place, Reach};
-use crate::tracing::margins::meet::{Crossing, crossings};
+use crate::tracing::margins::meet::{Crossing, crossings, nearnesses};
 use crate::tracing::margins::parts::Part;
-use crate::tracing::margins::{Arranged, Lines};
+use crate::tracing::margins::{Arranged, Lines, Located, Solved};
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 
@@ -44,27 +44,48 @@ impl<F: Family> Lines<'_, F> {
                 }
             }
         }
-        for meeting in crossings(&self.all, &self.runs.window, &self.runs.lengths) {
-            if let Some(vertex) = self.crossing_vertex(&meeting)? {
-                self.keep(vertex, &mut vertices);
+        let (lengths, window) = (self.runs.lengths, self.runs.window);
+        let mut touches: Vec<Crossing> = Vec::new();
+        for near in nearnesses(&self.all, &window, lengths.touch) {
+            let known = |it: &Crossing| {
+                it.lines == near.lines && (it.point - near.point).norm() < lengths.close
+            };
+            if !touches.iter().any(known)
+                && let Some(touch) = self.touch(&near)?
+            {
+                let margins = touch.lines.map(|line| self.all[line].margin.clone()).to_vec();
+                let (point, kind) = (self.inside(&touch.point), VertexKind::Crossing);
+                let vertex = Vertex { point, kind, margins };
+                keep(Located { vertex, error: lengths.same }, &mut vertices);
+                touches.push(touch);
+            }
+        }
+        for meeting in crossings(&self.all, &window, &lengths) {
+            // Cubics of lines that touch may cross beside that place, by their errors.
+            let touches = touches.iter().any(|touch| {
+                let apart = (touch.point - meeting.point).norm();
+                touch.lines == meeting.lines && apart < 10.0 * lengths.close
+            });
+            if !touches && let Some(vertex) = self.crossing_vertex(&meeting)? {
+                keep(vertex, &mut vertices);
             }
         }
         for [index, end] in self.open_ends() {
             let vertex = self.end_vertex(index, end, &mut vertices)?;
             cuts[index].push(Cut { place: self.all[index].end(end), vertex });
         }
-        let reach = 2.0 * self.runs.lengths.same;
         for (vertex, it) in vertices.iter().enumerate() {
             self.runs.go_on()?;
+            let reach = it.error + 3.0 * self.runs.options.interpolation;
             for (line, own) in self.all.iter().zip(&mut cuts) {
                 let known = own.iter().any(|cut| cut.vertex == vertex);
-                if let Some((place, _)) = line.near(&it.point, reach).filter(|_| !known) {
+                if let Some((place, _)) = line.near(&it.vertex.point, reach).filter(|_| !known) {
                     own.push(Cut { place, vertex });
                 }
             }
         }
         let parts = self.divided(cuts);
-        self.seen(&parts, vertices)
+        self.seen(&parts, vertices.into_iter().map(|it| it.vertex).collect())
     }
 
     /// Drops lines that cannot be told from others along their whole length: fragments of margins
@@ -92,49 +113,62 @@ impl<F: Family> Lines<'_, F> {
         &self,
         line: &Line<F::Margin>,
         end: usize,
-        vertices: &mut Vec<Vertex<F::Margin>>,
+        vertices: &mut Vec<Located<F::Margin>>,
     ) -> usize {
         let (window, tip) = (self.runs.window, line.tip(end));
         let point = window.onto_boundary(&tip, self.runs.lengths.same).unwrap_or(tip);
         let corner = window.corners().contains(&point);
         let kind = if corner { VertexKind::WindowCorner } else { VertexKind::WindowEdge };
-        self.keep(Vertex { point, kind, margins: vec![line.margin.clone()] }, vertices)
+        let vertex = Vertex { point, kind, margins: vec![line.margin.clone()] };
+        keep(Located { vertex, error: self.runs.lengths.solved }, vertices)
     }
 
-    /// The index of a vertex, which may be a known one.
-    fn keep(&self, vertex: Vertex<F::Margin>, vertices: &mut Vec<Vertex<F::Margin>>) -> usize {
-        let near = 2.0 * self.runs.lengths.same;
-        let known = vertices.iter().position(|it| (it.point - vertex.point).norm() < near);
-        known.unwrap_or_else(|| {
-            vertices.push(vertex);
-            vertices.len() - 1
-        })
+    /// A place that is solved for once, from these numbers.
+    pub(super) fn once(
+        &self,
+        from: [u64; 5],
+        solve: impl FnOnce() -> Traced<Option<Solved>, F>,
+    ) -> Traced<Option<Solved>, F> {
+        if let Some(known) = self.solved.borrow().get(&from) {
+            return Ok(*known);
+        }
+        let found = solve()?;
+        self.solved.borrow_mut().insert(from, found);
+        Ok(found)
     }
 
     /// The vertex where the cubics of two lines cross, solved for with their margins; `None` if the
     /// lines only seem to cross.
-    fn crossing_vertex(&self, meeting: &Crossing) -> Traced<Option<Vertex<F::Margin>>, F> {
+    fn crossing_vertex(&self, meeting: &Crossing) -> Traced<Option<Located<F::Margin>>, F> {
         let lengths = self.runs.lengths;
         let Crossing { lines: [one, other], places: [here, there], point } = meeting;
         let (one, other) = (&self.all[*one], &self.all[*other]);
         let names = [&one.names[here.piece], &other.names[there.piece]];
         let (along, across) = (one.tangent(*here), other.tangent(*there));
         let sine = along.perp(&across).abs().max(lengths.same / lengths.scale);
-        let found = if names[0] == names[1] {
-            None
-        } else {
+        let itself = names[0] == names[1];
+        let [x, y] = [point.x, point.y].map(f64::to_bits);
+        let solved = self.once([x, y, along.x.to_bits(), across.x.to_bits(), 0], || {
+            if itself {
+                // The gradient of one margin vanishes where its zero set crosses itself.
+                let reach = lengths.close;
+                let found = stationary(&self.runs, names[0], point, reach, reach)?;
+                return Ok(found.map(|place| (place, lengths.solved)));
+            }
             let reach = 10.0 * lengths.close;
-            crossing(&self.runs, names, point, &along, lengths.beyond, reach)?
-        };
+            crossing(&self.runs, names, point, &along, lengths.beyond, reach)
+        })?;
         let open = (lengths.same / sine).max(lengths.touch);
-        let solved = found.map(|(place, _)| place).filter(|place| (place - point).norm() < open);
+        let solved = solved.filter(|(place, _)| (place - point).norm() < open);
         // Lines that touch cross by their errors.
         if solved.is_none() && sine < 100.0 * angle::DEPENDENT {
             return Ok(None);
         }
         let margins = vec![one.margin.clone(), other.margin.clone()];
-        let point = self.inside(&solved.unwrap_or(*point));
-        Ok(Some(Vertex { point, kind: VertexKind::Crossing, margins }))
+        let (point, error) = solved.unwrap_or((*point, lengths.same));
+        let kind = if itself { VertexKind::Degenerate } else { VertexKind::Crossing };
+        let vertex = Vertex { point: self.inside(&point), kind, margins };
+        Ok(Some(Located { vertex, error: error.max(lengths.solved) }))
     }
 
     /// The parts between the cuts, line after line.
@@ -163,4 +197,14 @@ impl<F: Family> Lines<'_, F> {
         }
         parts
     }
+}
+
+/// The index of a vertex, which may be a known one.
+fn keep<M>(new: Located<M>, vertices: &mut Vec<Located<M>>) -> usize {
+    let near = |it: &Located<M>| (it.vertex.point - new.vertex.point).norm() < it.error + new.error;
+    let known = vertices.iter().position(near);
+    known.unwrap_or_else(|| {
+        vertices.push(new);
+        vertices.len() - 1
+    })
 }

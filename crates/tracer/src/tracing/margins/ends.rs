@@ -3,8 +3,8 @@
 use crate::curve::{Vertex, VertexKind};
 use crate::family::Family;
 use crate::tracing::corrector::crossing;
-use crate::tracing::margins::Lines;
-use crate::tracing::margins::line::{Place, Reach};
+use crate::tracing::margins::line::{Line, Place, Reach};
+use crate::tracing::margins::{Lines, Located, Solved};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
@@ -31,27 +31,51 @@ impl<F: Family> Lines<'_, F> {
         &self,
         index: usize,
         end: usize,
-        vertices: &mut Vec<Vertex<F::Margin>>,
+        vertices: &mut Vec<Located<F::Margin>>,
     ) -> Traced<usize, F> {
         let lengths = self.runs.lengths;
         let tip = self.all[index].tip(end);
-        if let Some(ahead) = self.touched_ahead(index, end, vertices) {
+        let beside = self.nearest(index, &tip);
+        let [x, y] = [tip.x, tip.y].map(f64::to_bits);
+        let mut own = self.once([x, y, end as u64, 0, 1], || self.cusp(index, end))?;
+        // Where a margin is singular, a smooth one of a run without the phases of length zero is
+        // equal to it: the two meet where that line crosses.
+        if own.is_none()
+            && let Some(ahead) = self.touched_ahead(index, end, vertices, [0.9, 1.1])
+        {
             return Ok(ahead);
         }
-        let beside = self.nearest(index, &tip);
-        let solved = match beside {
-            Some((other, place, distance)) => {
-                let reach = (100.0 * distance).max(lengths.touch).min(lengths.close);
-                self.common_zero(index, end, other, place, reach)?
-            }
-            None => None,
-        };
-        let aim = solved.unwrap_or(tip);
-        let away = |vertex: &Vertex<F::Margin>| (vertex.point - aim).norm();
+        let mut solved = own;
+        if solved.is_none()
+            && let Some((other, place, distance)) = beside
+        {
+            let reach = (100.0 * distance).max(lengths.touch).min(lengths.close);
+            let foot = self.all[other].at(place);
+            let foot = [foot.x, foot.y].map(f64::to_bits);
+            solved = self.once([x, y, foot[0], foot[1], 2 + end as u64], || {
+                Ok(match self.root_end(index, end, (other, place))? {
+                    Some(found) => Some(found),
+                    None => self.common_zero(index, end, other, place, reach)?,
+                })
+            })?;
+        }
+        if solved.is_none() {
+            own = self.once([x, y, end as u64, 1, 1], || self.flat(index, end))?;
+            solved = own;
+        }
+        if solved.is_none()
+            && let Some(ahead) = self.touched_ahead(index, end, vertices, [0.5, 2.0])
+        {
+            return Ok(ahead);
+        }
+        let aim = solved.map_or(tip, |(place, _)| place);
+        let away = |it: &Located<F::Margin>| (it.vertex.point - aim).norm();
         let known = vertices.iter().enumerate().map(|(vertex, it)| (vertex, away(it)));
         let known = known.min_by(|one, other| one.1.total_cmp(&other.1));
         let snaps = match (solved, beside) {
-            (Some(_), _) => 2.0 * lengths.same,
+            (Some((_, error)), _) if own.is_some() => error + lengths.same,
+            // Along a line on which it begins, its end is known worse than where others cross it.
+            (Some((_, error)), _) => 10.0 * error + lengths.piece,
             // The error of a place that was lost is like its distance from the other line.
             (None, Some((_, _, distance))) => 10.0 * distance + lengths.piece,
             (None, None) => lengths.close,
@@ -63,13 +87,14 @@ impl<F: Family> Lines<'_, F> {
         }
         let margins = vec![self.all[index].margin.clone()];
         let foot = beside.map(|(other, place, _)| self.all[other].at(place));
-        let point = solved.or(foot).unwrap_or(tip);
-        vertices.push(Vertex { point, kind: VertexKind::Degenerate, margins });
+        let (point, error) = solved.unwrap_or((foot.unwrap_or(tip), lengths.same));
+        let vertex = Vertex { point, kind: VertexKind::Degenerate, margins };
+        vertices.push(Located { vertex, error: error.max(lengths.same) });
         Ok(vertices.len() - 1)
     }
 
     /// The line that passes closest by the tip of another.
-    fn nearest(&self, index: usize, tip: &Point) -> Option<(usize, Place, f64)> {
+    pub(super) fn nearest(&self, index: usize, tip: &Point) -> Option<(usize, Place, f64)> {
         let reach = self.runs.lengths.close;
         let others = self.all.iter().enumerate().filter(|(other, _)| *other != index);
         let near = others.filter_map(|(other, line)| {
@@ -87,9 +112,9 @@ impl<F: Family> Lines<'_, F> {
         other: usize,
         place: Place,
         reach: f64,
-    ) -> Traced<Option<Point>, F> {
+    ) -> Traced<Option<Solved>, F> {
         let (line, passing) = (&self.all[index], &self.all[other]);
-        let own = &line.names[if end == 0 { 0 } else { line.pieces() }];
+        let own = line.name(end);
         let names = [own, &passing.names[place.piece]];
         if names[0] == names[1] {
             return Ok(None);
@@ -98,48 +123,37 @@ impl<F: Family> Lines<'_, F> {
         let found = crossing(&self.runs, names, &tip, &along, self.runs.lengths.beyond, reach)?;
         let on = |point: &Point| passing.distance(point, 2.0 * self.runs.lengths.same).is_some();
         Ok(found.filter(|(point, error)| *error <= self.runs.lengths.same && on(point)))
-            .map(|found| found.map(|(point, _)| point))
     }
 
-    /// The vertex ahead of a line that was lost because it touches another one. The square root of
-    /// their distance falls evenly up to the place where they touch.
+    /// The vertex ahead of a line that was lost because it touches another one: among those whose
+    /// distance is so many times the one that is expected, the nearest to it.
     fn touched_ahead(
         &self,
         index: usize,
         end: usize,
-        vertices: &[Vertex<F::Margin>],
+        vertices: &[Located<F::Margin>],
+        [least, most]: [f64; 2],
     ) -> Option<usize> {
         let lengths = self.runs.lengths;
-        let line = &self.all[index];
-        let last = line.pieces();
-        let (tip, before) = (line.tip(end), if end == 0 { 1 } else { last - 1 });
-        let forward = tip - line.nodes[before].point;
+        let last = self.all[index].last(end);
         for (other, passing) in self.all.iter().enumerate() {
             if other == index {
                 continue;
             }
-            let apart = |point: &Point| passing.distance(point, 10.0 * lengths.close);
-            let Some(close) = apart(&tip) else { continue };
-            if close >= lengths.half || close <= lengths.least {
-                continue;
-            }
+            let Some(left) = self.way_left(index, end, passing) else { continue };
             // A line that does not touch it is lost right before it.
-            let here = vertices.iter().any(|it| (it.point - tip).norm() < 10.0 * close);
-            if here {
+            let close = passing.distance(&last.point, lengths.half).unwrap_or(0.0);
+            let away = |it: &Located<F::Margin>| (it.vertex.point - last.point).norm();
+            if vertices.iter().any(|it| away(it) < 10.0 * close) {
                 continue;
             }
-            let inwards = (0..=last).map(|step| if end == 0 { step } else { last - step });
-            let far = inwards.map(|node| line.nodes[node].point).find_map(|point| {
-                let distance = apart(&point).filter(|distance| *distance > 4.0 * close)?;
-                Some(((point - tip).norm(), distance))
-            });
-            let Some((way, distance)) = far else { continue };
-            let left = way * close.sqrt() / (distance.sqrt() - close.sqrt());
             let ahead = vertices.iter().enumerate().filter_map(|(vertex, it)| {
-                let step = it.point - tip;
-                let (away, on) = (step.norm(), passing.distance(&it.point, lengths.touch));
-                let alike = away > 0.5 * left && away < 2.0 * left && step.dot(&forward) > 0.0;
-                (alike && on.is_some()).then(|| (vertex, (away - left).abs()))
+                let step = it.vertex.point - last.point;
+                let away = step.norm();
+                let alike = away > least * left && away < most * left;
+                let on = passing.distance(&it.vertex.point, lengths.touch);
+                (alike && step.dot(&last.tangent) > 0.0 && on.is_some())
+                    .then(|| (vertex, (away - left).abs()))
             });
             let best = ahead.min_by(|one, other| one.1.total_cmp(&other.1));
             if let Some((vertex, _)) = best {
@@ -147,5 +161,41 @@ impl<F: Family> Lines<'_, F> {
             }
         }
         None
+    }
+
+    /// How far ahead of its tip a line touches another one that passes by; `None` if it does not
+    /// come close to it. The square root of their distance falls evenly up to there; the parabola
+    /// through three places knows how evenly.
+    pub(super) fn way_left(
+        &self,
+        index: usize,
+        end: usize,
+        passing: &Line<F::Margin>,
+    ) -> Option<f64> {
+        let lengths = self.runs.lengths;
+        let (line, tip) = (&self.all[index], self.all[index].tip(end));
+        let apart = |point: &Point| passing.distance(point, 10.0 * lengths.close);
+        let close = apart(&tip)?;
+        if close >= lengths.half || close <= lengths.least {
+            return None;
+        }
+        let last = line.pieces();
+        let mut inwards = (0..=last).map(|step| if end == 0 { step } else { last - step });
+        let mut farther = |least: f64| {
+            inwards.by_ref().map(|node| line.nodes[node].point).find_map(|point| {
+                let distance = apart(&point).filter(|distance| *distance > least)?;
+                Some(((point - tip).norm(), distance.sqrt()))
+            })
+        };
+        let (way, root) = farther(4.0 * close)?;
+        let rise = (root - close.sqrt()) / way;
+        let even = close.sqrt() / rise;
+        let Some((far, higher)) = farther(16.0 * close) else { return Some(even) };
+        // √d = √close + rise x + bend x (x − way), at x below 0.
+        let bend = ((higher - close.sqrt()) / far - rise) / (far - way);
+        let slope = rise - bend * way;
+        let square = slope * slope - 4.0 * bend * close.sqrt();
+        let left = 2.0 * close.sqrt() / (slope + square.max(0.0).sqrt());
+        Some(if left > 0.0 && left.is_finite() { left } else { even })
     }
 }

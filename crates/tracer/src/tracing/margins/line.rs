@@ -1,11 +1,12 @@
 //! The zero set of one margin, followed as far as the margin exists.
 
 use crate::cubic::Cubic;
+use crate::cubic::bernstein::each_root;
 use crate::curve::Node;
 use crate::family::Family;
 use crate::tracing::corrector::{correct, correct_on_edge};
 use crate::tracing::runs::{Runs, Traced};
-use crate::window::Point;
+use crate::window::{Point, Window};
 
 /// Where a line ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +82,17 @@ impl<M: Clone> Line<M> {
         self.nodes[if end == 0 { 0 } else { self.pieces() }].point
     }
 
+    /// The name of the margin at the start, or at the end.
+    pub fn name(&self, end: usize) -> &M {
+        &self.names[if end == 0 { 0 } else { self.pieces() }]
+    }
+
+    /// The node at the start, or at the end, with its tangent outwards.
+    pub fn last(&self, end: usize) -> Node {
+        let node = self.nodes[if end == 0 { 0 } else { self.pieces() }];
+        if end == 0 { Node { tangent: -node.tangent, ..node } } else { node }
+    }
+
     /// The place of the start, or of the end.
     pub fn end(&self, end: usize) -> Place {
         if end == 0 {
@@ -134,6 +146,28 @@ impl<M: Clone> Line<M> {
     /// The distance of a point, if it is no farther than `reach`.
     pub fn distance(&self, point: &Point, reach: f64) -> Option<f64> {
         self.near(point, reach).map(|(_, distance)| distance)
+    }
+
+    /// The places from 0 to 1 where the line crosses a segment under this name.
+    pub fn crossings(&self, a: &Point, b: &Point, name: &M) -> Vec<f64>
+    where
+        M: PartialEq,
+    {
+        let (low, high) = (a.inf(b), a.sup(b));
+        let apart = |[least, most]: &[Point; 2]| {
+            (0..2).any(|axis| most[axis] < low[axis] || least[axis] > high[axis])
+        };
+        let mut places = Vec::new();
+        if !apart(&self.bounds) {
+            for piece in 0..self.pieces() {
+                let cubic = self.cubic(piece);
+                let named = self.margin == *name || self.names[piece] == *name;
+                if named && !apart(&cubic.bounds()) {
+                    places.extend(cubic.crossings(a, b).into_iter().map(|[_, place]| place));
+                }
+            }
+        }
+        places
     }
 
     /// Whether the line crosses a segment.
@@ -190,6 +224,28 @@ pub(super) fn trace<F: Family>(
     Ok((nodes.len() > 1).then(|| Line::new(margin, Track { nodes, names }, Some(ends))))
 }
 
+/// A place of a cubic that is farther beyond an edge of a window than `room`, or the end if that is
+/// beyond: the first such place.
+fn beyond(arc: &Cubic, window: &Window, room: f64) -> Option<f64> {
+    let end = (!window.contains(&arc.points[3])).then_some(1.0);
+    let bulge = |axis: usize, edge: f64, sign: f64| {
+        let heights = arc.points.map(|point| sign * (point[axis] - edge));
+        if heights.iter().all(|height| *height <= room) {
+            return None;
+        }
+        let mut places = Vec::new();
+        each_root(&heights, &mut |theta| places.push(theta));
+        places.push(1.0);
+        // Between two places on the edge, the cubic is on one side of it.
+        let between = places.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+        between.into_iter().find(|theta| sign * (arc.at(*theta)[axis] - edge) > room)
+    };
+    let edges =
+        (0..2).flat_map(|axis| [(axis, window.low[axis], -1.0), (axis, window.high[axis], 1.0)]);
+    let bulges = edges.filter_map(|(axis, edge, sign)| bulge(axis, edge, sign));
+    bulges.chain(end).min_by(f64::total_cmp)
+}
+
 /// Follows a margin in one direction. The end is `None` if the line is closed.
 fn follow<F: Family>(
     runs: &Runs<'_, F>,
@@ -210,6 +266,7 @@ fn follow<F: Family>(
     let mut h = lengths.around;
     while track.nodes.len() < options.max_nodes {
         if h < lengths.same {
+            step.end(&mut track)?;
             return Ok((track, Some(Reach::Lost)));
         }
         h = h.min(options.max_step * lengths.scale);
@@ -221,8 +278,8 @@ fn follow<F: Family>(
             }
         };
         let arc = Cubic::between(&step.node, &next);
-        if !runs.window.contains(&next.point) {
-            step.leave(&arc, &gradient, &mut track)?;
+        if let Some(outside) = beyond(&arc, &runs.window, 2.0 * options.interpolation) {
+            step.leave(&arc, outside, &gradient, &mut track)?;
             return Ok((track, Some(Reach::Edge)));
         }
         if track.nodes.len() > 3 {
@@ -311,10 +368,42 @@ impl<F: Family> Step<'_, '_, F> {
         Ok(())
     }
 
-    /// Ends a track on the edge through which a cubic leaves the window.
-    fn leave(&self, arc: &Cubic, gradient: &Point, track: &mut Track<F::Margin>) -> Traced<(), F> {
+    /// Moves the last node of a track that was lost to where the margin ceases to exist.
+    fn end(&self, track: &mut Track<F::Margin>) -> Traced<(), F> {
+        let (runs, node) = (self.runs, &self.node);
+        let (mut exists, mut ceases) = (0.0, runs.lengths.same);
+        let mut last = node.point;
+        while ceases - exists > runs.options.tolerance {
+            let middle = f64::midpoint(exists, ceases);
+            if middle <= exists || middle >= ceases {
+                break;
+            }
+            let guess = node.point + node.tangent * middle;
+            match correct(runs, &self.name, &guess, &self.gradient, 0.3 * middle)? {
+                Some(found) if runs.window.contains(&found.point) => {
+                    (exists, last) = (middle, found.point);
+                }
+                _ => ceases = middle,
+            }
+        }
+        // The only node of a track is where the other track begins.
+        if let [_, .., end] = &mut track.nodes[..] {
+            end.point = last;
+        }
+        Ok(())
+    }
+
+    /// Ends a track on the edge through which a cubic leaves the window before a place that is
+    /// outside.
+    fn leave(
+        &self,
+        arc: &Cubic,
+        mut outside: f64,
+        gradient: &Point,
+        track: &mut Track<F::Margin>,
+    ) -> Traced<(), F> {
         let (runs, window) = (self.runs, self.runs.window);
-        let (mut inside, mut outside) = (0.0, 1.0);
+        let mut inside = 0.0;
         while outside - inside > f64::EPSILON {
             let middle = f64::midpoint(inside, outside);
             if window.contains(&arc.at(middle)) {

@@ -14,6 +14,64 @@ pub(super) struct Crossing {
     pub point: Point,
 }
 
+/// A place where two lines are nearest to each other, and nearly touch.
+pub(super) struct Nearness {
+    pub lines: [usize; 2],
+    pub places: [Place; 2],
+    /// The place on the first line.
+    pub point: Point,
+}
+
+/// The places where pairs of lines are parallel and no farther apart than `reach`.
+pub(super) fn nearnesses<M: Clone>(
+    lines: &[Line<M>],
+    window: &Window,
+    reach: f64,
+) -> Vec<Nearness> {
+    let mut found = Vec::new();
+    for [one, other] in pairs(lines, window) {
+        if one.0 == other.0 {
+            continue;
+        }
+        let cubics = [one, other].map(|(line, piece)| lines[line].cubic(piece));
+        let ([low, high], [least, most]) = (cubics[0].bounds(), cubics[1].bounds());
+        if (0..2).any(|axis| low[axis] > most[axis] + reach || least[axis] > high[axis] + reach) {
+            continue;
+        }
+        let beside = |theta: f64| lines[other.0].near(&cubics[0].at(theta), cubics[0].chord());
+        // The sine of the angle between the two, on the first one.
+        let sine = |theta: f64| {
+            let (along, Some((there, _))) = (cubics[0].tangent(theta), beside(theta)) else {
+                return 0.0;
+            };
+            let beside = lines[other.0].tangent(there);
+            along.perp(&beside) * along.dot(&beside).signum()
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        let ends = [sine(low), sine(high)];
+        let changes = ends[0] * ends[1] <= 0.0;
+        // Lines that run along each other differ by their errors.
+        if !changes || ends.iter().all(|sine| sine.abs() < angle::STRAIGHT) {
+            continue;
+        }
+        for _ in 0..ROUNDS {
+            let middle = f64::midpoint(low, high);
+            if sine(middle) * ends[0] > 0.0 { low = middle } else { high = middle }
+        }
+        let theta = f64::midpoint(low, high);
+        if let Some((there, distance)) = beside(theta)
+            && distance <= reach
+        {
+            let (places, point) = ([Place { piece: one.1, theta }, there], cubics[0].at(theta));
+            found.push(Nearness { lines: [one.0, other.0], places, point });
+        }
+    }
+    found
+}
+
+/// How often a piece is halved around the place where it is parallel to another one.
+const ROUNDS: usize = 20;
+
 /// The crossings of all lines.
 pub(super) fn crossings<M: Clone>(
     lines: &[Line<M>],

@@ -1,8 +1,9 @@
 //! The parts of lines that runs see: those with different labels on their two sides.
 
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
 use crate::family::Family;
-use crate::lengths::angle;
+use crate::lengths::{Lengths, angle};
 use crate::tracing::fit::mirrored;
 use crate::tracing::margins::line::{Cut, Line, Place};
 use crate::tracing::margins::{Arranged, Lines};
@@ -70,11 +71,11 @@ impl<F: Family> Lines<'_, F> {
         parts: &[Part],
         vertices: Vec<Vertex<F::Margin>>,
     ) -> Traced<Arranged<F>, F> {
-        let mut doubts = Vec::new();
+        let (mut doubts, mut strips) = (Vec::new(), Vec::new());
         let mut all = Vec::new();
         for part in parts {
             self.runs.go_on()?;
-            let sides = self.sides(part, &mut doubts)?;
+            let sides = self.sides(part, &mut doubts, &mut strips)?;
             if sides[0] != sides[1] {
                 let length = part.length(&self.all[part.line]);
                 all.push((length, all.len(), Seen { part: *part, sides }));
@@ -122,27 +123,36 @@ impl<F: Family> Lines<'_, F> {
             vertex.margins.sort();
             vertex.margins.dedup();
         }
-        Ok(Arranged { curves, vertices: kept, doubts })
+        Ok(Arranged { curves, vertices: kept, doubts, strips })
     }
 
     /// The labels on the left and on the right of a part, where it is farthest from other lines.
-    /// Places where it has others are `doubts`.
-    fn sides(&mut self, part: &Part, doubts: &mut Vec<Point>) -> Traced<[F::Label; 2], F> {
+    /// Places where it has others are `doubts`, and segments beside it on which the label changes
+    /// are `strips`.
+    fn sides(
+        &mut self,
+        part: &Part,
+        doubts: &mut Vec<Point>,
+        strips: &mut Vec<[Point; 2]>,
+    ) -> Traced<[F::Label; 2], F> {
         let (lengths, line) = (self.runs.lengths, &self.all[part.line]);
         let length = part.length(line);
         let places = SHARES.map(|share| part.place(line, share));
         let points = places.map(|place| line.at(place));
         let others = self.all.iter().enumerate().filter(|(index, _)| *index != part.line);
         // Lines that are one along the whole part do not make it narrow.
+        let same = 4.0 * self.runs.options.interpolation;
         let others: Vec<[f64; 7]> = others
             .map(|(_, other)| points.map(|point| other.distance(&point, lengths.close)))
             .map(|distances| distances.map(|distance| distance.unwrap_or(lengths.close)))
-            .filter(|distances| distances.iter().any(|distance| *distance > 2.0 * lengths.same))
+            .filter(|distances| distances.iter().any(|distance| *distance > same))
             .collect();
         let mut places: Vec<(f64, Point, Point)> = (0..SHARES.len())
             .map(|index| {
                 let width = others.iter().map(|distances| distances[index]);
+                // Beyond an edge, lines end that labels know.
                 let width = width.fold(lengths.close, f64::min);
+                let width = width.min(self.runs.window.depth(&points[index]).max(0.0));
                 (width, points[index], line.tangent(places[index]))
             })
             .collect();
@@ -156,8 +166,31 @@ impl<F: Family> Lines<'_, F> {
                     doubts.extend([*place, point]);
                 }
             }
+            if sides[0] != sides[1] {
+                for (width, place, tangent) in &places[..3] {
+                    strips.extend(self.strips(*width, place, tangent)?);
+                }
+            }
         }
         Ok(sides)
+    }
+
+    /// The segments beside a place, left and right, on which the label changes up to other lines
+    /// that are so far away.
+    fn strips(&mut self, width: f64, point: &Point, tangent: &Point) -> Traced<Vec<[Point; 2]>, F> {
+        let options = &self.runs.options;
+        let near = options.offset.max(4.0 * options.interpolation);
+        let left = Point::new(-tangent.y, tangent.x);
+        let mut found = Vec::new();
+        if 0.3 * width > 2.0 * near {
+            for normal in [left, -left] {
+                let ends = [near, 0.3 * width].map(|away| point + normal * away);
+                if self.label(&ends[0])? != self.label(&ends[1])? {
+                    found.push(ends);
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// The labels on the left and on the right of a place that is so far from other lines.
@@ -167,7 +200,7 @@ impl<F: Family> Lines<'_, F> {
         point: &Point,
         tangent: &Point,
     ) -> Traced<[F::Label; 2], F> {
-        let away = (0.3 * width).max(self.runs.lengths.same);
+        let away = (0.3 * width).max(4.0 * self.runs.options.interpolation);
         let left = Point::new(-tangent.y, tangent.x) * away;
         Ok([self.label(&(point + left))?, self.label(&(point - left))?])
     }
@@ -183,22 +216,25 @@ impl<F: Family> Lines<'_, F> {
     }
 
     /// Whether a part runs along one that is seen: two margins are one function there, or cannot be
-    /// told apart.
+    /// told apart. Two sides of a strip have the labels of their sides in opposite order.
     fn is_twin(&self, part: &Seen<F::Label>, seen: &[(usize, Seen<F::Label>)]) -> bool {
         let line = &self.all[part.part.line];
-        let points = SHARES.map(|share| line.at(part.part.place(line, share)));
+        let places = SHARES.map(|share| part.part.place(line, share));
         let [left, right] = &part.sides;
         seen.iter().any(|(_, other)| {
             let along = &self.all[other.part.line];
             let [from, to] = other.part.ends(along);
             let touch = self.runs.lengths.touch;
-            let runs_along = |point: &Point| {
-                let near = along.near(point, touch).map(|(place, _)| place);
-                near.is_some_and(|place| along.ends.is_none() || (from <= place && place <= to))
+            let runs_along = |place: &Place| {
+                let near = along.near(&line.at(*place), touch).map(|(near, _)| near);
+                near.is_some_and(|near| {
+                    let same_way = along.tangent(near).dot(&line.tangent(*place)) > 0.0;
+                    let sides = if same_way { [left, right] } else { [right, left] };
+                    let inside = along.ends.is_none() || (from <= near && near <= to);
+                    inside && other.sides.each_ref() == sides
+                })
             };
-            let same =
-                other.sides == part.sides || [right, left] == [&other.sides[0], &other.sides[1]];
-            same && other.part.line != part.part.line && points.iter().all(runs_along)
+            other.part.line != part.part.line && places.iter().all(runs_along)
         })
     }
 
@@ -258,40 +294,91 @@ impl<F: Family> Lines<'_, F> {
             tangent: line.tangent(cut.place),
         });
         let solved = self.runs.lengths.solved;
-        let apart = |node: &Node| {
-            [start, end].iter().all(|other| (node.point - other.point).norm() > solved)
-        };
-        let between = (from.place.piece + 1..=to.place.piece).map(|index| *line.node(index));
-        let mut nodes: Vec<Node> = between.filter(apart).collect();
+        let (mut nodes, [start, end]) = self.inner(line, [from, to], [start, end]);
         let is_moved =
             |cut: &Cut| (line.at(cut.place) - vertices[cut.vertex].point).norm() > solved;
         nodes.insert(0, start);
         if is_moved(&to) {
-            lead(&mut nodes, end);
+            self.lead(&mut nodes, end, part.line);
         } else {
             nodes.push(end);
         }
         if is_moved(&from) {
             let turned = |node: &Node| Node { tangent: -node.tangent, ..*node };
             nodes = nodes.iter().skip(1).rev().map(turned).collect();
-            lead(&mut nodes, turned(&start));
+            self.lead(&mut nodes, turned(&start), part.line);
             nodes = nodes.iter().rev().map(turned).collect();
         }
         nodes
     }
-}
 
-/// Leads a curve to a place that is a little farther, or beside its last node.
-fn lead(nodes: &mut Vec<Node>, end: Node) {
-    let misses = |node: &Node| node.tangent.angle(&(end.point - node.point)) > angle::PARALLEL;
-    while nodes.len() > 1 && nodes.last().is_some_and(misses) {
-        nodes.pop();
+    /// The nodes that a part needs between its ends, and its ends. Close to them, where margins may
+    /// be flat, nodes and tangents have errors. A part has none there if one cubic shows as much.
+    fn inner(
+        &self,
+        line: &Line<F::Margin>,
+        [from, to]: [Cut; 2],
+        ends: [Node; 2],
+    ) -> (Vec<Node>, [Node; 2]) {
+        let Lengths { piece, close, around, .. } = self.runs.lengths;
+        let numbers = from.place.piece + 1..=to.place.piece;
+        let all: Vec<Node> = numbers.clone().map(|index| *line.node(index)).collect();
+        let middles = numbers.skip(1).map(|index| line.cubic(index - 1).at(0.5));
+        let samples: Vec<Point> = all.iter().map(|node| node.point).chain(middles).collect();
+        let apart =
+            |point: &Point, room: f64| ends.iter().all(|end| (point - end.point).norm() > room);
+        let beyond = |room: f64| -> Vec<Node> {
+            all.iter().filter(|node| apart(&node.point, room)).copied().collect()
+        };
+        for room in [around, close] {
+            let nodes = beyond(room);
+            let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else { continue };
+            let back = -mirrored(&-first.tangent, &(ends[0].point - first.point));
+            let forth = mirrored(&last.tangent, &(ends[1].point - last.point));
+            let circular = [Node { tangent: back, ..ends[0] }, Node { tangent: forth, ..ends[1] }];
+            for ends in [ends, circular] {
+                let arcs = [Cubic::between(&ends[0], first), Cubic::between(last, &ends[1])];
+                let fits = |point: &Point| {
+                    let off = arcs.iter().map(|arc| arc.closest(point).1);
+                    off.fold(f64::INFINITY, f64::min) <= self.runs.options.interpolation
+                };
+                if samples.iter().filter(|point| !apart(point, room)).all(fits) {
+                    return (nodes, ends);
+                }
+            }
+        }
+        (beyond(piece), ends)
     }
-    let Some(last) = nodes.last() else { return };
-    let chord = end.point - last.point;
-    let tangent = mirrored(&last.tangent, &chord);
-    let tangent = if misses(last) { chord.normalize() } else { tangent };
-    nodes.push(Node { point: end.point, tangent });
+
+    /// Leads a curve on a line to a place that is a little farther, or beside its last node.
+    fn lead(&self, nodes: &mut Vec<Node>, end: Node, line: usize) {
+        let misses = |node: &Node| node.tangent.angle(&(end.point - node.point)) > angle::PARALLEL;
+        while nodes.len() > 1 && nodes.last().is_some_and(misses) {
+            nodes.pop();
+        }
+        let Some(last) = nodes.last() else { return };
+        let chord = end.point - last.point;
+        let tangent = if misses(last) {
+            chord.normalize()
+        } else {
+            let circular = mirrored(&last.tangent, &chord);
+            self.beside(&end.point, &circular, line).unwrap_or(circular)
+        };
+        nodes.push(Node { point: end.point, tangent });
+    }
+
+    /// The tangent of another line at a vertex where a line with nearly this tangent ends. It
+    /// begins there on the other one.
+    fn beside(&self, vertex: &Point, tangent: &Point, line: usize) -> Option<Point> {
+        let others = self.all.iter().enumerate().filter(|(other, _)| *other != line);
+        let tangents = others.filter_map(|(_, other)| {
+            let (place, _) = other.near(vertex, 2.0 * self.runs.lengths.same)?;
+            let along = other.tangent(place);
+            Some(along * along.dot(tangent).signum())
+        });
+        let near = tangents.filter(|along| along.angle(tangent) < angle::ORDERED);
+        near.min_by(|one, other| one.angle(tangent).total_cmp(&other.angle(tangent)))
+    }
 }
 
 /// How many parts end at each vertex.

@@ -34,7 +34,7 @@ impl<F: Family> Lines<'_, F> {
     fn walk(&mut self, from: &Sampled<F>, to: &Sampled<F>) -> Traced<Sampled<F>, F> {
         let mut here = from.clone();
         for _ in 0..STEPS {
-            let way = Way { runs: &self.runs, ends: [here.0, to.0] };
+            let way = Way { runs: &self.runs, lines: &self.all, ends: [here.0, to.0] };
             // Zeros closer together belong to one change.
             let near = 0.3 * self.runs.lengths.half / way.length();
             let zeros = way.zeros(&here, to, near)?;
@@ -110,6 +110,7 @@ impl<F: Family> Lines<'_, F> {
 /// A segment, along which places run from 0 to 1.
 struct Way<'r, 'f, F: Family> {
     runs: &'r Runs<'f, F>,
+    lines: &'r [Line<F::Margin>],
     ends: [Point; 2],
 }
 
@@ -156,7 +157,12 @@ impl<F: Family> Way<'_, '_, F> {
                 Some((_, last)) if zeros.is_empty() => Some(*last),
                 _ => self.value(end, margin)?,
             };
-            if let Some((place, name)) = self.zero(margin, *value, (end, last))? {
+            let known = last.and_then(|last| self.known(margin, *value * last, end));
+            let found = match known {
+                Some(place) => Some((place, margin.clone())),
+                None => self.zero(margin, *value, (end, last))?,
+            };
+            if let Some((place, name)) = found {
                 zeros.push((place, self.point(place), name));
                 end = end.min(place + near);
             }
@@ -164,6 +170,16 @@ impl<F: Family> Way<'_, '_, F> {
         zeros.retain(|zero| zero.0 <= end);
         zeros.sort_by(|one, other| one.0.total_cmp(&other.0));
         Ok(zeros)
+    }
+
+    /// The first place before `end` where a known line of a margin crosses the way. `None` if the
+    /// margin has other zeros too, by its signs at the start and at the end: their `product`.
+    fn known(&self, margin: &F::Margin, product: f64, end: f64) -> Option<f64> {
+        let [a, b] = self.ends;
+        let places = self.lines.iter().flat_map(|line| line.crossings(&a, &b, margin));
+        let places: Vec<f64> = places.filter(|place| *place <= end).collect();
+        let is_all = !places.len().is_multiple_of(2) && product < 0.0;
+        places.into_iter().min_by(f64::total_cmp).filter(|_| is_all)
     }
 
     /// A zero of a margin with this value at the start, before the place `end`, where it has the
