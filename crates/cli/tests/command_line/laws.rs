@@ -244,7 +244,7 @@ fn adhesion_is_computed_where_bodies_may_stay_together() {
     let printed = stickslip("laws granular/jkr/viscoelastic/mindlin --format json").stdout;
     let mut law: Value = serde_json::from_str(&printed).unwrap();
     (law["pull_off"], law["end"]) = (json!(0.2), json!("overlap"));
-    directory.write("law.json", &law.to_string());
+    directory.write("law.json", law.to_string());
     directory.write("in.csv", "kappa,psi,damping\n18,0.6,0\n18,0.6,2\n");
     let ran = directory.run("collide --batch in.csv --law law.json");
     assert_eq!(ran.code, 0, "{}", ran.stderr);
