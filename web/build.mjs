@@ -12,6 +12,7 @@ import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
+import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -114,7 +115,7 @@ async function css() {
 async function page() {
   const parts = {
     STYLE: await css(),
-    UNPACK: built("examples", "unpack.wasm").toString("base64"),
+    UNPACK: gzipSync(built("examples", "unpack.wasm"), { level: 9 }).toString("base64"),
     ...packed(built("stickslip_explorer.wasm")),
     WORKER: await bundle("worker.ts"),
     MAIN: await bundle("main.ts"),

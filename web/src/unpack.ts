@@ -1,7 +1,8 @@
 // The module of the page is a text. What unpacks it is a module too, examples/unpack.rs in
 // crates/explorer.
 
-/** What a part of the module is made from: texts in base64, and its size in bytes. */
+/** What a part of the module is made from: texts in base64, the first of which the browser can
+ * unpack by itself, and its size in bytes. */
 export interface Packed {
   unpacker: string;
   packed: string;
@@ -15,7 +16,9 @@ interface Exports {
 }
 
 export async function unpack({ unpacker, packed, size }: Packed): Promise<Uint8Array> {
-  const { instance } = await WebAssembly.instantiate(bytes(unpacker));
+  const zipped = new Blob([bytes(unpacker)]).stream();
+  const code = new Response(zipped.pipeThrough(new DecompressionStream("gzip")));
+  const { instance } = await WebAssembly.instantiate(await code.arrayBuffer());
   const exports = instance.exports as unknown as Exports;
   const file = bytes(packed);
   const input = exports.input(file.length);
