@@ -128,7 +128,7 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
     ...symmetric(most),
     curves: [
       ...ghost(other?.course.tangential_force),
-      { name: "limits ±F", colour: colours.normal, width: 1.3, dash: [4, 3], values: limit },
+      { name: dynamic < 1 && decay > 0 ? "limits" : "limits ±F", colour: colours.normal, width: 1.3, dash: [4, 3], values: limit },
       { name: "", colour: colours.normal, width: 1.3, dash: [4, 3], values: negative, quiet: true },
       {
         name: "tangential Fₜ/μ",
