@@ -125,7 +125,7 @@ def _scene(given: Mapping[str, Any]) -> dict[str, Any]:
     if "law" not in given:
         return scene
     law = dict(given["law"])
-    scene |= {"tangential": given["tangential_damping"], **law.pop("friction", {})}
+    scene |= {"tangential": given.get("tangential_damping", 0.0), **law.pop("friction", {})}
     for name, known in laws().items():
         if law == dict(known.law):
             return {**scene, "law": name}

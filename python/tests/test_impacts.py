@@ -60,8 +60,12 @@ def test_speed_and_angle() -> None:
 
 
 def test_files_of_the_program() -> None:
+    laws = {
+        "hooke_spheres": "gran/hooke/history",
+        "adhesive_spheres": "granular/jkr/viscoelastic/mindlin",
+    }
     for path in sorted(EXAMPLES.glob("*.json")):
-        law = "gran/hooke/history" if path.name.startswith("hooke") else None
+        law = laws.get(path.stem)
         bodies = Bodies.read(path, law)
         if "velocity_m_per_s" in path.read_text():
             found = bodies.encounter()
