@@ -76,7 +76,7 @@ def test_what_has_no_meaning_is_refused() -> None:
         ("paper+limit_dampin", "; perhaps 'paper\\+limit_damping'"),
         ('{"normal":', "expected a name"),
         ({"normal": "hooke"}, "normal = 'hooke'; expected one of 'hertz', 'linear', 'dmt', 'jkr'$"),
-        ({"normal": "linaer"}, "'hertz', 'linear'; perhaps 'linear'$"),
+        ({"normal": "linaer"}, "'linear', 'dmt', 'jkr'; perhaps 'linear'$"),
         ({"nomal": "linear"}, "'nomal' is no term; expected one of .*; perhaps 'normal'$"),
         ({"rescaled": "yes"}, "rescaled = 'yes'; expected one of False, True$"),
         ({"rescaled": 1}, "rescaled = 1; expected one of False, True$"),

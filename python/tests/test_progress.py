@@ -75,7 +75,7 @@ def oscillate(t: float, y: np.ndarray) -> list[float]:
             oscillate, (0, 100), [1, 0], t_eval=[], progress=report
         ),
         lambda report: stickslip.solve(
-            oscillate, (3, 1), [1, 0], t_eval=[], record=False, progress=report
+            oscillate, (9, 1), [1, 0], t_eval=[], record=False, progress=report
         ),
     ],
 )
