@@ -125,7 +125,7 @@ def terms(law: Law | None) -> dict[str, Any]:
     return found if name == law or law is None else {**found, "limit_damping": True}
 
 
-def without_friction(law: Law | None) -> Law:
+def without_friction(law: Law | None) -> dict[str, Any]:
     """The terms of a law whose contact has no tangential force."""
     return {**terms(law), "history": "none"}
 
