@@ -321,6 +321,8 @@ test("a link leads to the same view", async () => {
         law: "paper",
         damping: 0.2,
         tangential: 0,
+        dynamic: 0.5,
+        decay: 2,
         mu: 0.3,
         alpha: 0.25,
         bodies: store.state.bodies,
@@ -334,7 +336,14 @@ test("a link leads to the same view", async () => {
   const second = await browser.open(hash);
   assert.deepEqual(await second.page.evaluate(() => globalThis.explorer.store.state), state);
   await second.page.waitForSelector(".facts .pinned");
-  assert.deepEqual([...first.said, ...second.said], []);
+  // Links of before had one coefficient of friction.
+  const older = hash.replace("%22dynamic%22%3A0.5%2C%22decay%22%3A2%2C", "");
+  assert.notEqual(older, hash);
+  const third = await browser.open(older);
+  const pinned = await third.page.evaluate(() => globalThis.explorer.store.state.pinned);
+  assert.deepEqual([pinned.dynamic, pinned.decay, pinned.damping], [1, 0, 0.2]);
+  await third.close();
+  assert.deepEqual([...first.said, ...second.said, ...third.said], []);
   await first.close();
   await second.close();
 });
