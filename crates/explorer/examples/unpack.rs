@@ -1,5 +1,5 @@
 //! The module that unpacks the module of the page: LZMA makes that a third smaller than the
-//! browser's own gzip does, and unpacks it in a quarter of the time that JavaScript takes.
+//! browser's own gzip does.
 //!
 //! An example, so that it is a module of its own, which the library's exports are no part of. The
 //! page writes a file of `xz --format=lzma` into [`input`], calls [`unpack`], and reads what it
