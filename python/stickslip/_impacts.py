@@ -114,6 +114,10 @@ class Surface:
     unloading_stiffness_ratio: float | None = None
     #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
     hardening_per_m: float | None = None
+    #: Least normal velocity in m/s at which the bodies yield, where the damping is yielding.
+    yield_velocity_m_per_s: float | None = None
+    #: Instead, the contact pressure in Pa up to which they are elastic.
+    yield_pressure_pa: float | None = None
     #: Surface energy of adhesion in J/m², half the work of adhesion, where the law has it.
     surface_energy_j_per_m2: float | None = None
     #: Coefficient of normal restitution, instead of a damping.

@@ -13,8 +13,8 @@ import numpy as np
 from stickslip import _native
 
 #: A law by its name, or its terms as in the JSON file of the program: normal ("linear", "hertz",
-#: "dmt", "jkr"), damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening"),
-#: tangential ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
+#: "dmt", "jkr"), damping ("none", "linear", "viscoelastic", "tsuji", "hysteretic", "hardening",
+#: "yielding"), tangential ("constant", "mindlin"), history ("displacement", "force", "none"), rescaled, limit_damping
 #: (bool), end ("force", "overlap"), coulomb_test ("total", "spring"), and friction, a mapping with
 #: the numbers dynamic, mu_d/mu_s, and decay, B: Coulomb's limit is then
 #: (dynamic + (1 - dynamic) exp(-B |w|)) |F|, and mu of psi is mu_s. With adhesion, "dmt" and "jkr",

@@ -389,7 +389,7 @@ class TimeSteps:
         parameters: tuple[_Floats, _Floats, _Floats],
         law: _Law,
         steps: tuple[list[float], int],
-        scheme: str,
+        scheme: tuple[str, float],
         reduction: tuple[float, float],
         threads: int,
         progress: _Report | None = None,

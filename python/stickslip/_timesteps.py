@@ -125,6 +125,7 @@ def timestep(
     steps: Iterable[float] = (10, 20, 50, 100, 200, 500, 1000),
     phases: int = 16,
     scheme: str = "lammps",
+    overlap: float = 0.0,
     mu: float = 0.4,
     alpha: float = 2 / 7,
     threads: int | None = None,
@@ -135,8 +136,11 @@ def timestep(
     kappa, psi, damping: impacts as in `collide_many`; arrays broadcast. law, tangential_damping: as
     in `collide`. steps: numbers t_c/dt of steps in the undamped contact time t_c, 1 to 1e7. phases:
     number of parts of a step after which a contact begins, 1 to 4096. scheme: "lammps", or
-    "elapsed", in which the history advances in the first step by the time since the contact began.
-    mu, alpha: weigh the tangential energy, and nothing else. threads: 1 to 1024, or None for one for
+    "elapsed", in which the history advances in the first step by the time since the contact began,
+    or "synchronized_verlet", in which velocities are taken along the normal in the middle of a step.
+    overlap: greatest overlap over the distance of the centres, 0 to 0.5, with which the normal of
+    two equal spheres without spins turns during the contact; what that changes is in the errors.
+    mu, alpha: weigh the tangential energy, and how much spheres turn. threads: 1 to 1024, or None for one for
     each core; results do not depend on it. progress: called now and then with the steps done and all
     that are known; True shows a bar on stderr.
 
@@ -155,7 +159,7 @@ def timestep(
     weights = (float(mu), float(alpha))
     with reported(progress, "timestep") as report:
         native = _native.TimeSteps.measure(
-            flat, chosen, counts, scheme, weights, _threads(threads), report
+            flat, chosen, counts, (scheme, float(overlap)), weights, _threads(threads), report
         )
     return TimeSteps(native)
 

@@ -211,6 +211,21 @@ def test_hysteretic_forces() -> None:
         stickslip.collide(3, 0.4, law="liggghts/sjkr")
 
 
+def test_bodies_that_yield() -> None:
+    assert stickslip.collide(3, 0.4, 0.9, law="thornton").eps_n == pytest.approx(1, abs=1e-12)
+    found = stickslip.collide(3, 0.4, 4, law="thornton")
+    assert found.eps_n == pytest.approx(0.8122788724014045, abs=1e-12)
+    assert stickslip.restitution(found.eps_n, "thornton").damping == pytest.approx(4, rel=1e-11)
+    grain = stickslip.Sphere(1e-3, stickslip.Material(210e9, 0.3, 7850))
+    surface = stickslip.Surface(0.3, 1e7, yield_velocity_m_per_s=0.05)
+    bodies = stickslip.Bodies(grain, grain, surface, "thornton")
+    many = stickslip.impact(bodies, [0.04, 0.2], 0.1)
+    assert many.eps_n == pytest.approx([1, found.eps_n], abs=1e-11)
+    with pytest.raises(ValueError, match="are both given"):
+        both = stickslip.Surface(0.3, 1e7, yield_velocity_m_per_s=0.05, yield_pressure_pa=1e9)
+        stickslip.Bodies(grain, grain, both, "thornton")
+
+
 def test_decaying_friction() -> None:
     usual = stickslip.laws()["gran/hertz/history"].law
     law = {**usual, "friction": {"dynamic": 0.4, "decay": 5.0}}

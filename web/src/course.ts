@@ -52,9 +52,19 @@ export function energies(
   const normal = each((index) => 0.5 * course.normal_velocity[index]! ** 2);
   const tangential = each((index) => 0.5 * factor * course.velocity[index]! ** 2);
   const own = law?.law;
+  const [greatest, strongest] = [course.compression, course.normal_force].map((all) =>
+    all.reduce((most, value) => Math.max(most, value), 0),
+  ) as [number, number];
   const overlap = (index: number) => Math.max(0, course.compression[index]!);
   const compression = each((index) => {
     const x = overlap(index);
+    if (own?.damping === "yielding" && damping > 1) {
+      // What would come back from here: the radius is larger by what the force is weaker.
+      const force = Math.max(0, course.normal_force[index]!);
+      const loads = course.normal_velocity[index]! > 0;
+      const radius = loads ? (force > 0 ? x ** 1.5 / force : 1) : greatest ** 1.5 / strongest;
+      return 0.4 * force ** (5 / 3) * radius ** (-1 / 3);
+    }
     const stiffened: Numbers = { hysteretic: 1 + damping, hardening: 1 + damping * x };
     const stiffening = stiffened[own?.damping ?? ""];
     // A hysteretic force gives back only what it holds where it falls, with a higher stiffness.

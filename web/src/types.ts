@@ -108,7 +108,7 @@ export interface Law {
   tangential: boolean;
   law: {
     normal: "linear" | "hertz";
-    damping: "none" | "linear" | "viscoelastic" | "tsuji" | "hysteretic" | "hardening";
+    damping: "none" | "linear" | "viscoelastic" | "tsuji" | "hysteretic" | "hardening" | "yielding";
     tangential: "constant" | "mindlin";
     history: "displacement" | "force" | "none";
     coulomb_test?: "total" | "spring";

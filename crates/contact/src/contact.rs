@@ -93,6 +93,11 @@ impl Contact {
             let expected = "0, since a hysteretic force has no dashpot";
             in_range("tangential_damping", tangential_damping, expected, ok)?;
             let steady = law.tangential == Tangential::Constant && !law.rescaled;
+            let elastic = law.damping != Damping::Yielding || law.normal == Normal::Hertz;
+            if !elastic {
+                let phrase = "yields, and its force is not that of Hertz";
+                return Err(InvalidValue::phrase("the law", phrase, "a force of Hertz"));
+            }
             if law.remembers() && !steady {
                 let phrase = "has a hysteretic force and a spring that depends on the overlap";
                 let expected = "a spring of constant stiffness that is not rescaled";
@@ -146,7 +151,8 @@ impl Contact {
         self.psi
     }
 
-    /// Scaled damping a of the normal force; where it is hysteretic, k₂/k₁ − 1.
+    /// Scaled damping a of the normal force; where it is hysteretic, k₂/k₁ − 1, or
+    /// g_n/v_y where it yields.
     pub fn damping(&self) -> f64 {
         self.damping
     }

@@ -1,12 +1,13 @@
 //! A contact with any law, in coordinates in which everything is smooth.
 //!
 //! With x = uⁿ and dt = n u^{n−1} ds, where n is 1, 2 or 4, the equations of every [`Law`] are
-//! polynomial: du/ds = v, and no root is left. Five things need a mode of their own:
+//! polynomial: du/ds = v, and no root is left. Five things need modes of their own:
 //!
 //! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
 //!   compression on, history over √x is carried, whose equation is polynomial again.
 //! - While a hysteretic force falls, uⁿ is the overlap less what is left of it where the force
-//!   ends: the equations are those of a force without hysteresis and with another stiffness.
+//!   ends: the equations are those of a force without hysteresis and with another stiffness. Where
+//!   the bodies yield, it follows its tangent before.
 //! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
 //!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
@@ -28,6 +29,7 @@ use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State};
 pub(crate) mod decay;
 pub(crate) mod equations;
 mod exponents;
+pub(crate) mod hysteresis;
 mod system;
 
 use crate::contact::Contact;
@@ -64,7 +66,8 @@ pub const DASHPOT: usize = 10;
 
 /// Number of guards.
 pub const GUARDS: usize = 5;
-/// Guard of greatest compression, where the history is rescaled or the force hysteretic.
+/// Guard of greatest compression, where the history is rescaled or the force hysteretic, and
+/// before it of yield.
 pub const CREST: usize = 3;
 /// Guard of a reversal of the tangential velocity. It changes nothing unless friction decays with
 /// the velocity.
@@ -100,6 +103,8 @@ pub struct ContactMode {
 pub enum Stage {
     /// From the start of contact on.
     Main,
+    /// Where the bodies yield.
+    Yielding,
     /// Behind greatest compression, where the history is rescaled or the force hysteretic.
     Unloading,
     /// Where the normal force attracts.
@@ -216,8 +221,9 @@ impl GeneralContact {
                 return ContactMode { heading, progress: ModeProgress::Settled, ..mode };
             }
             (CREST, _) => {
-                let progress = ModeProgress::Settled;
-                return ContactMode { stage: Stage::Unloading, progress, ..mode };
+                let yields = mode.stage == Stage::Main && self.equations.yields();
+                let stage = if yields { Stage::Yielding } else { Stage::Unloading };
+                return ContactMode { stage, progress: ModeProgress::Settled, ..mode };
             }
             (END, _) => {
                 let (regime, progress) = if slips && !self.equations.exponents.remembers {
@@ -400,7 +406,8 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
             }
             (_, ModeProgress::Settled) => [below, below],
         };
-        let turns = (e.rescaled || e.hysteretic) && mode.stage == Stage::Main;
+        let loads = matches!(mode.stage, Stage::Main | Stage::Yielding);
+        let turns = (e.rescaled || e.hysteretic) && loads;
         let crest = if turns { below } else { Guard::OFF };
         let reversal = if self.equations.decays() {
             below
@@ -447,7 +454,10 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let slips = mode.regime == Regime::Slip && self.excess_in_tail(mode, y) >= 0.0;
         let next = self.after(mode, guard, slips);
         if guard == CREST {
-            let turned = self.equations.turn(array(y));
+            let turned = match next.stage {
+                Stage::Yielding => *array(y),
+                _ => self.equations.turn(array(y)),
+            };
             // A contact that begins to stick here would lose the gap to its limit in rounding.
             if mode.progress == ModeProgress::Switched && self.equations.is_at_limit(mode, array(y))
             {

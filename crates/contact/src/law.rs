@@ -120,6 +120,12 @@ pub enum Damping {
     /// without adhesion and below its largest stiffness, and Walton's and Braun's with
     /// k₂ = k₁ + S F.
     Hardening,
+    /// 0: the bodies yield. With a = g_n/v_y above 1, where v_y is the least normal velocity at
+    /// which they do, the force follows its tangent behind the overlap x_y = (5/4a²)^{2/5}, and
+    /// while the overlap falls, it is that of Hertz with a larger radius, √r (x − x₀)^{3/2}.
+    /// Only for [`Normal::Hertz`]. This is the law of Thornton, J. Appl. Mech. 64, 383 (1997),
+    /// with a tangential spring of constant stiffness.
+    Yielding,
 }
 
 impl Damping {
@@ -130,7 +136,7 @@ impl Damping {
 
     /// Whether the force is another one while the overlap falls.
     pub fn is_hysteretic(self) -> bool {
-        matches!(self, Self::Hysteretic | Self::Hardening)
+        matches!(self, Self::Hysteretic | Self::Hardening | Self::Yielding)
     }
 }
 
@@ -307,7 +313,7 @@ impl Law {
         };
         let root = if self.normal == Normal::Jkr { "r" } else { "√x" };
         let eta = match self.damping {
-            Damping::None | Damping::Hysteretic | Damping::Hardening => "",
+            Damping::None | Damping::Hysteretic | Damping::Hardening | Damping::Yielding => "",
             Damping::Linear => "a",
             Damping::Viscoelastic if self.normal == Normal::Jkr => "a r",
             Damping::Viscoelastic => "a √x",
@@ -315,6 +321,10 @@ impl Law {
         };
         let damped = self.damping.is_viscous();
         let normal = match (damped, self.limit_damping && self.end == ContactEnd::Overlap) {
+            _ if self.damping == Damping::Yielding => {
+                "F = x^(3/2), x_y^(1/2) (3x − x_y)/2 where x > x_y, √r (x − x₀)^(3/2) where v < 0"
+                    .to_owned()
+            }
             _ if self.damping.is_hysteretic() => {
                 let falling = match self.normal {
                     Normal::Linear => "(1 + a)(x − x₀)",

@@ -60,9 +60,8 @@ pub fn refusal(name: &str) -> Option<&'static str> {
                            changes the spin about the normal alone; rolling between equal spheres \
                            changes the difference of their spins and not ε_t, and on a wall the spin \
                            by μ_r/μ of what sliding does";
-    const THORNTON: &str = "Thornton's elastic-plastic force is not computed: it is Hertz' up to a \
-                            yield velocity and linear above; walton-braun and \
-                            walton-braun/hardening are hysteretic forces that are computed";
+    const PLASTIC: &str = "this plasticity is not computed, but thornton, walton-braun and \
+                           walton-braun/hardening are";
     const KNOWN: [(&str, &str); 14] = [
         ("sjkr", ADHESION),
         ("jkr", ADHESION),
@@ -75,9 +74,9 @@ pub fn refusal(name: &str) -> Option<&'static str> {
         ("epsd", ROLLING),
         ("cdt", ROLLING),
         ("marshall", ROLLING),
-        ("thornton", THORNTON),
-        ("elastoplastic", THORNTON),
-        ("mdr", THORNTON),
+        ("thornton", PLASTIC),
+        ("elastoplastic", PLASTIC),
+        ("mdr", PLASTIC),
     ];
     let words = name.to_lowercase();
     let is_part = |word: &str| {
@@ -214,6 +213,11 @@ const WALTON_BRAUN: &str = "Walton and Braun, J. Rheol. 30, 949 (1986), normal f
                             force is that of a spring of constant stiffness";
 const WALTON_BRAUN_CHECKED: &str = "an independent integration of 100 collisions: \
                                     tests/data/hysteretic_contacts.py; no particle code was run";
+const THORNTON: &str = "Thornton, J. Appl. Mech. 64, 383 (1997), normal forces; the tangential force \
+                        is that of a spring of constant stiffness";
+const THORNTON_CHECKED: &str = "ε_n in closed form, and an independent integration of 100 \
+                                collisions: tests/data/yielding_contacts.py; no particle code was \
+                                run";
 const LIGGGHTS_NO_HISTORY: &str = "read in tangential_model_no_history.h, commit 25fc396; \
                                    limitForce on is +limit_damping";
 const MERCURY: &str = "MercuryDPM, a copy of July 2024 (kuwt/MercuryDPM_fork, commit fb0ebf1): \
@@ -238,7 +242,9 @@ const YADE_CHECKED: &str = "read in the source (HertzMindlin.cpp and Viscoelasti
 const YADE_UNDAMPED: &str = "read in the source, with the integrator's own damping 0; the law has no \
                              dashpots";
 
-use Damping::{Hardening, Hysteretic, Linear as Constant, None as Undamped, Tsuji, Viscoelastic};
+use Damping::{
+    Hardening, Hysteretic, Linear as Constant, None as Undamped, Tsuji, Viscoelastic, Yielding,
+};
 use HistoryOf::{Displacement, Force};
 use Normal::{Dmt, Hertz, Jkr, Linear};
 use Tangential::{Constant as Spring, Mindlin};
@@ -351,6 +357,14 @@ pub const ALL: &[Preset] = &[
         false,
         WALTON_BRAUN,
         WALTON_BRAUN_CHECKED,
+    ),
+    read_in(
+        "Thornton",
+        "thornton",
+        law(Hertz, Yielding, Spring, Displacement, false),
+        false,
+        THORNTON,
+        THORNTON_CHECKED,
     ),
     lammps("gran/hooke/history", law(Linear, Constant, Spring, Displacement, false)),
     lammps("gran/hertz/history", law(Hertz, Viscoelastic, Mindlin, Displacement, false)),

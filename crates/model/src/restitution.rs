@@ -5,8 +5,10 @@
 //! force is Hertz' and the damping Tsuji's, a does not depend on the velocity; for all other laws
 //! ε_n belongs to one normal velocity.
 
+use std::cell::Cell;
 use std::f64::consts::PI;
 
+use stickslip_contact::numerics::root::crossing;
 use stickslip_contact::{Contact, ContactEnd, Damping, InvalidValue, Law, Normal, presets};
 
 use crate::engines::Engine;
@@ -17,7 +19,7 @@ use crate::engines::error::CollisionError;
 pub fn depends_on_velocity(law: Law) -> bool {
     match law.damping {
         Damping::None | Damping::Hysteretic => false,
-        Damping::Hardening => true,
+        Damping::Hardening | Damping::Yielding => true,
         _ => critical_damping(law).is_none(),
     }
 }
@@ -42,14 +44,6 @@ fn attracts(law: Law) -> bool {
     law.end == ContactEnd::Overlap && !law.limit_damping
 }
 
-/// ln ε_n of a hysteretic force over ln(1 + a): the energy is divided as the overlap is.
-fn hysteretic_power(law: Law) -> f64 {
-    match law.normal {
-        Normal::Linear => -0.5,
-        _ => -1.0 / 3.0,
-    }
-}
-
 /// ε_n of a law with the scaled damping a: in closed form for linear and hysteretic forces and
 /// where a contact with Tsuji's damping of Hertz' force lasts until x = 0, otherwise by
 /// [`Engine::Auto`].
@@ -71,8 +65,8 @@ pub fn eps_n(law: Law, damping: f64) -> Result<f64, CollisionError> {
     // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
     // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(law, 0.0)?;
-    if law.damping.is_hysteretic() {
-        return Ok((hysteretic_power(law) * damping.ln_1p()).exp());
+    if let Some(e_n) = law.hysteretic_e_n(damping) {
+        return Ok(e_n);
     }
     if let (Some(critical), true) = (critical_damping(law), attracts(law)) {
         let ratio = damping / critical;
@@ -127,8 +121,10 @@ fn unreachable(wanted: f64, least: f64) -> CollisionError {
 /// [`CollisionError`]: ε_n is out of its range, or no damping of this law has it, or the law has
 /// adhesion, or a contact cannot be computed.
 pub fn damping(law: Law, wanted: f64) -> Result<f64, CollisionError> {
-    /// The largest damping that is tried.
+    /// The largest damping that is tried. A contact with far too much takes long to compute.
     const MOST: f64 = 128.0;
+    /// What a force that yields is computed for.
+    const MOST_YIELDING: f64 = 1e4;
     law.require_no_adhesion("the damping of an e_n is")?;
     let ok = wanted > 0.0 && wanted <= 1.0;
     InvalidValue::check("e_n", wanted, "a number above 0, at most 1", ok)?;
@@ -138,48 +134,36 @@ pub fn damping(law: Law, wanted: f64) -> Result<f64, CollisionError> {
     if law.damping == Damping::None {
         return Err(unreachable(wanted, 1.0));
     }
-    if law.damping.is_hysteretic() {
-        return Ok((wanted.ln() / hysteretic_power(law)).exp_m1());
+    if law.damping.is_hysteretic() && law.damping != Damping::Yielding {
+        let power = if law.normal == Normal::Linear { -2.0 } else { -3.0 };
+        return Ok((wanted.ln() * power).exp_m1());
     }
     if let (Some(critical), true) = (critical_damping(law), attracts(law)) {
         let log = -wanted.ln();
         return Ok(critical * log / PI.hypot(log));
     }
-    let most = f64::min(MOST, (1.0 - 1e-9) * law.endless_from());
-    // A contact with far too much damping takes long to compute.
-    let (mut low, mut above) = (0.0, 1.0 - wanted);
-    let mut high = f64::min(0.5, most);
-    let mut below = loop {
+    let most = if law.damping == Damping::Yielding { MOST_YIELDING } else { MOST };
+    let most = f64::min(most, (1.0 - 1e-9) * law.endless_from());
+    let (mut low, mut high) = (0.0, f64::min(0.5, most));
+    loop {
         let least = eps_n(law, high)?;
         if least <= wanted {
-            break least - wanted;
+            break;
         }
         if high >= most {
             return Err(unreachable(wanted, least));
         }
-        (low, above) = (high, least - wanted);
-        high = f64::min(2.0 * high, most);
-    };
-    // The rule of false position, where an end that stays counts half (the Illinois rule).
-    for _ in 0..100 {
-        let guess = low + (high - low) * (above / (above - below));
-        if !(low < guess && guess < high) {
-            break;
-        }
-        let excess = eps_n(law, guess)? - wanted;
-        if excess.abs() <= f64::EPSILON {
-            return Ok(guess);
-        }
-        if excess > 0.0 {
-            (low, above, below) = (guess, excess, 0.5 * below);
-        } else {
-            (high, below, above) = (guess, excess, 0.5 * above);
-        }
-        if high - low <= 4.0 * f64::EPSILON * high {
-            break;
-        }
+        (low, high) = (high, f64::min(2.0 * high, most));
     }
-    Ok(0.5 * (low + high))
+    let failure = Cell::new(None);
+    let found = crossing(low, high, |damping| match eps_n(law, damping) {
+        Ok(e_n) => e_n - wanted,
+        Err(error) => {
+            failure.set(Some(error));
+            0.0
+        }
+    });
+    failure.take().map_or(Ok(found), Err)
 }
 
 /// What it takes to have an ε_n, and what a particle code makes of it.

@@ -3,7 +3,7 @@
 use stickslip_model::exact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{CollisionError, Contact, Engine, InvalidValue, Law, Normal};
+use stickslip_model::{CollisionError, Contact, Damping, Engine, InvalidValue, Law, Normal};
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, Options, Start};
 use stickslip_tracer::{
@@ -287,7 +287,7 @@ impl CollisionPlane {
 
     /// Refuses planes whose boundaries may have kinks: those with a friction that decays, which has
     /// one where the velocity reverses, and those with a hysteretic force in which a slip may graze
-    /// its end at greatest compression, where this force has a kink.
+    /// its end at greatest compression, where this force has a kink, or where bodies yield.
     ///
     /// With the stiffness k = dF/dx a slip is left where s κ w − dF/dt falls through 0, and that
     /// has the rate F (k − κ) at greatest compression: where κ is between both stiffnesses, there
@@ -310,6 +310,11 @@ impl CollisionPlane {
         }
         if !law.damping.is_hysteretic() || !law.remembers() || damping == 0.0 {
             return Ok(());
+        }
+        if law.damping == Damping::Yielding {
+            let expected = "at most 1, which is a normal velocity of yield: beyond, a slip may \
+                            graze its end where bodies begin to yield, which is not traced";
+            return InvalidValue::check("damping", damping, expected, damping <= 1.0);
         }
         let (loading, power) = match law.normal {
             Normal::Linear => (1.0, 1.0),

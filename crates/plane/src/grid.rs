@@ -135,14 +135,15 @@ impl Grid {
     /// The collision at the centre of a cell.
     ///
     /// # Errors
-    /// [`InvalidValue`]: no collision has the parameters of this cell, or the law has adhesion.
+    /// [`InvalidValue`]: no collision has the parameters of this cell.
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidValue> {
-        self.law.require_no_adhesion("maps are")?;
         let [kappa, psi, damping] = self.parameters(column, row)?;
         let contact = Contact::new(kappa, psi, damping)?;
         let mut law = self.law;
-        if let Coordinates::Velocities { .. } = self.coordinates {
-            law.friction.decay *= self.columns.centre(column);
+        if let Coordinates::Velocities { pair } = self.coordinates {
+            let normal = self.columns.centre(column);
+            law.friction.decay *= normal;
+            law.pull_off = pair.impact(normal, self.rows.centre(row))?.contact.law().pull_off;
         }
         let contact = contact.with_law(law, self.tangential_damping)?;
         let friction = match self.coordinates {

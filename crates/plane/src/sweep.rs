@@ -31,7 +31,8 @@ impl fmt::Display for FailedPoints {
 ///
 /// The results are the same with any number of threads. A point that cannot be computed gets
 /// [`NO_EPS_T`] and [`NO_COUNT`]; [`point()`] says why, and [`FailureCount`] counts such points.
-/// Points that the grid does not have get them too.
+/// Points that the grid does not have get them too. Bodies that stay together have [`NO_EPS_T`] and
+/// the number of switches up to where that is certain.
 ///
 /// # Panics
 /// If the results of all points do not fit into memory.
@@ -58,7 +59,7 @@ pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), Co
     let count = collision.switches.len();
     let switch_count = i32::try_from(count)
         .map_err(|_| InvalidValue::new("switches", count, "up to 2147483647 in a map"))?;
-    Ok((collision.eps_t(), switch_count))
+    Ok((if collision.adheres { NO_EPS_T } else { collision.eps_t() }, switch_count))
 }
 
 /// Counts the points without a result while tiles arrive.
@@ -100,13 +101,14 @@ impl FailureCount {
 /// Tangential restitution and number of switches at successive points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
-    /// Tangential restitution ε_t of each point; [`NO_EPS_T`] where it could not be computed.
+    /// Tangential restitution ε_t of each point; [`NO_EPS_T`] where it could not be computed, and
+    /// where bodies stay together.
     pub eps_t: Vec<f64>,
     /// Number of switches at each point; [`NO_COUNT`] where it could not be computed.
     pub switch_count: Vec<i32>,
 }
 
-/// Stands for ε_t where it could not be computed: a NaN that always has the same bits.
+/// Stands for ε_t where it could not be computed, or there is none: a NaN that always has the same bits.
 pub const NO_EPS_T: f64 = f64::NAN;
 /// Stands for the number of switches where it could not be computed.
 pub const NO_COUNT: i32 = -1;

@@ -213,7 +213,7 @@ impl Constants {
         let (normal, stiffness) =
             if hertz { ("hertz", elastic / root) } else { ("hooke", elastic) };
         let (keyword, eta) = match law.damping {
-            Damping::None | Damping::Hysteretic | Damping::Hardening => {
+            Damping::None | Damping::Hysteretic | Damping::Hardening | Damping::Yielding => {
                 ("velocity", "0.0".to_owned())
             }
             _ if damping == 0.0 => ("velocity", "0.0".to_owned()),

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use serde_json::to_string;
 use stickslip_model::Reduction;
 use stickslip_plane::progress::Report;
-use stickslip_practice::time_steps::{self, Scheme, TimeStepSettings, TimeStepsError};
+use stickslip_practice::time_steps::{self, Scheme, Stepping, TimeStepSettings, TimeStepsError};
 
 use crate::arrays::{Parameters, Points};
 use crate::background::watched;
@@ -27,20 +27,23 @@ impl TimeSteps {
         parameters: Parameters<'_>,
         law: LawChoice,
         steps: (Vec<f64>, usize),
-        scheme: &str,
+        (scheme, overlap): (String, f64),
         reduction: (f64, f64),
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let names = Scheme::ALL.map(Scheme::name);
-        let scheme = Scheme::find(scheme)
+        let scheme = Scheme::find(&scheme)
             .ok_or_else(|| bad_input(format!("scheme = {scheme:?}; expected one of {names:?}")))?;
         let settings = TimeStepSettings {
             contacts: Points::new(&parameters, &law)?.contacts()?,
             steps_per_contact: steps.0,
             phases: steps.1,
-            scheme,
-            reduction: Reduction { mu: reduction.0, alpha: reduction.1 },
+            stepping: Stepping {
+                scheme,
+                overlap,
+                reduction: Reduction { mu: reduction.0, alpha: reduction.1 },
+            },
         };
         let work = move |report: Report<'_>| time_steps::run(&settings, report);
         let found = watched(py, threads, progress.as_ref(), work)?;

@@ -330,6 +330,7 @@ Other laws have other constants in \"surface\", beside \"friction\":
                          without unit (Tsuji with Hertz; both linear)
   hysteretic force       unloading_stiffness_ratio, k2/k1, 1 or above
   hardening              hardening_per_m, (k2/k1 - 1)/(greatest overlap)
+  yielding               yield_velocity_m_per_s, or yield_pressure_pa of the contact
   tangential damping     tangential_damping_ratio, without unit [default: 0]
   decaying friction      dynamic_friction, at most friction, and friction_decay_s_per_m
   adhesion (dmt, jkr)    surface_energy_j_per_m2, half the work of adhesion

@@ -48,7 +48,7 @@ pub struct LawsArguments {
     #[arg(long, value_name = "DIR", help_heading = "Page", conflicts_with_all = ["name", "format"])]
     pub out: Option<PathBuf>,
 
-    /// Scaled damping of the maps; 0 or above [default: 0.2]
+    /// Scaled damping of the maps, to which bodies that yield add 1; 0 or above [default: 0.2]
     #[arg(long, value_name = "A", help_heading = "Page", requires = "out")]
     #[arg(value_parser = |text: &str| Parameter::Damping.parse(text), allow_hyphen_values = true)]
     pub damping: Option<f64>,
@@ -210,9 +210,9 @@ List the contact laws that have names, or print one of them: those of particle c
 own keywords, with their equations, where these were read, and what was compared.
 
 A law consists of eight terms, in JSON and here: normal (linear, hertz, dmt, jkr), damping (none, linear, \
-viscoelastic, tsuji, hysteretic, hardening), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
+viscoelastic, tsuji, hysteretic, hardening, yielding), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
 limit_damping (true, false), end (force, overlap), coulomb_test (total, spring). Every combination \
-is a law, but a hysteretic force goes with a spring of constant stiffness only. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
+is a law, but a hysteretic force goes with a spring of constant stiffness only, and one that yields is Hertz'. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
 holds for the spring alone, the dashpot acts in stick only.
 
 Quantities are scaled: x overlap, v its rate, w tangential velocity, F normal and Q tangential force, \

@@ -15,7 +15,7 @@ use stickslip_files::output::json::lines;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Reduction};
 use stickslip_practice::time_steps::{
-    self, Scheme, Seconds, SteppedQuantity, TimeStepSettings, TimeSteps,
+    self, Scheme, Seconds, SteppedQuantity, Stepping, TimeStepSettings, TimeSteps,
 };
 
 use crate::error::Failure;
@@ -60,12 +60,12 @@ pub struct TimestepArguments {
     #[arg(conflicts_with = "damping")]
     pub e_n: Option<f64>,
 
-    /// Coefficient of friction μ, of which only the energy knows; above 0 [default: 0.4]
+    /// Coefficient of friction μ, for the energy and with --overlap; above 0 [default: 0.4]
     #[arg(long, value_name = "M", help_heading = "Impacts", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
     pub mu: Option<f64>,
 
-    /// Tangential inertia α, of which only the energy knows; above 0, at most 1 [default: 2/7]
+    /// Tangential inertia α, for the energy and with --overlap; above 0, at most 1 [default: 2/7]
     #[arg(long, value_name = "A", help_heading = "Impacts", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
     pub alpha: Option<f64>,
@@ -97,6 +97,12 @@ pub struct TimestepArguments {
     #[arg(value_parser = scheme())]
     pub scheme: Scheme,
 
+    /// Greatest overlap over the distance of the centres, so that the normal turns during the
+    /// contact of two equal spheres without spins; 0 to 0.5
+    #[arg(long, value_name = "X", help_heading = "Steps", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option, default_value_t = 0.0)]
+    pub overlap: f64,
+
     /// Wanted error, for which the largest step is told; above 0
     #[arg(long, value_name = "E", help_heading = "Steps", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option)]
@@ -123,8 +129,7 @@ pub fn run(arguments: &TimestepArguments) -> Result<(), Failure> {
         contacts,
         steps_per_contact: arguments.steps.clone(),
         phases: usize::from(arguments.phases),
-        scheme: arguments.scheme,
-        reduction,
+        stepping: Stepping { scheme: arguments.scheme, overlap: arguments.overlap, reduction },
     };
     settings.validate().map_err(refused)?;
     let wanted = arguments.error;
@@ -239,6 +244,9 @@ Schemes:
            whole steps, in the first step of a contact too; also MercuryDPM's and MFiX'
   elapsed  the same, but in the first step of a contact the history advances by the time since it
            began, as in older versions of MFiX
+  synchronized_verlet
+           velocities are taken along the normal in the middle of a step, as that keyword of LAMMPS
+           does; the same as lammps without --overlap
 
 Status of a step:
   ok          all contacts end, and the steps resolve both springs
@@ -248,6 +256,9 @@ Status of a step:
 With --error E, the largest dt/t_c is told at which the largest error is at most E, and at all
 shorter ones of the given steps too. Nothing is promised of steps that were not given.
 
+With --overlap, what a turning normal changes is in the errors too, and does not vanish with the
+step: ε_n and ε_t are those of the normal with which the contact begins.
+
 With --bodies, steps are told in seconds and in Rayleigh times too. The file has the constants of
 the law, as `impact --help` lists them.
 
@@ -256,5 +267,6 @@ Examples:
   stickslip timestep --kappa 1:60 --psi 0.05:2 --error 0.01 --plot errors.svg
   stickslip timestep --bodies examples/steel_spheres.json --steps 20,50,100 --format json
   stickslip timestep --bodies examples/hooke_spheres.json --law gran/hooke/history
+  stickslip timestep --kappa 3 --psi 2 --law gran/hooke/history --overlap 0.01
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

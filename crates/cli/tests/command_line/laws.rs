@@ -178,6 +178,26 @@ fn hysteretic_forces_are_a_law_like_others() {
         assert_eq!(found["eps_t"], 1.0, "{}", ran.stderr);
         assert_eq!(found["itinerary"], if name == "friction" { "+" } else { "o" });
     }
+    // Bodies that yield.
+    let mut yields = surface.clone();
+    for name in ["normal_stiffness_kg_per_s2", "unloading_stiffness_ratio"] {
+        yields.as_object_mut().unwrap().remove(name);
+    }
+    yields["yield_velocity_m_per_s"] = json!(0.025);
+    directory.write("bodies.json", bodies(yields.clone()).to_string());
+    let ran = directory.run(&format!("{impact} thornton"));
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert!((found["eps_n"].as_f64().unwrap() - 0.812_278_872_4).abs() < 1e-9, "{}", ran.stderr);
+    yields["yield_pressure_pa"] = json!(1e6);
+    directory.write("bodies.json", bodies(yields).to_string());
+    let both = directory.run(&format!("{impact} thornton"));
+    assert!(both.stderr.contains("are both given"), "{}", both.stderr);
+    let one = "collide --kappa 3 --psi 0.4 --law thornton --e-n 0.8 --format json";
+    let found: Value = serde_json::from_str(&directory.run(one).stdout).unwrap();
+    assert!((found["eps_n"].as_f64().unwrap() - 0.8).abs() < 1e-12);
+    let yielding = "trace --kappa 1:4 --psi 0.3:2 --damping 4 --law thornton --out atlas.json";
+    let refused = directory.run(yielding);
+    assert!(refused.stderr.contains("where bodies begin to yield"), "{}", refused.stderr);
     let trace = "trace --kappa 1:4 --psi 0.3:2 --damping 0.4 --law walton-braun --out atlas.json";
     let refused = directory.run(trace);
     assert_ne!(refused.code, 0);
@@ -273,7 +293,6 @@ fn adhesion_is_computed_where_bodies_may_stay_together() {
         (format!("collide --kappa 3 --psi 1 {name}"), "without pull-off"),
         ("collide --kappa 3 --psi 1 --pull-off 0.1".to_owned(), "without adhesion"),
         (format!("collide --kappa 3 --psi 1 {name} --pull-off 0"), "above 0"),
-        (format!("map --kappa 1:2 --psi 0.5:1 --size 4x4 --out map.csv {scaled}"), "maps are"),
         (format!("trace --kappa 1:2 --psi 0.5:1 --out atlas.json {scaled}"), "boundaries are"),
         (format!("timestep --kappa 1:2 --psi 0.5:1 {scaled}"), "time steps are"),
         (format!("collide --kappa 3 --psi 1 --e-n 0.8 {scaled}"), "the damping of an e_n is"),
@@ -283,6 +302,20 @@ fn adhesion_is_computed_where_bodies_may_stay_together() {
         assert_eq!(refused.code, 2, "{command}: {}", refused.stderr);
         assert!(refused.stderr.contains(why), "{command}: {}", refused.stderr);
     }
+    // Slow grains of a map have no restitution, and that is no failure.
+    let map = "--normal 0:0.2 --tangential 0.1:0.2 --size 2x1 --out map.csv --plot map.svg";
+    let mapped = directory.run(&format!("map --bodies {bodies} {name} {map}"));
+    assert_eq!(mapped.code, 0, "{}", mapped.stderr);
+    let rows = directory.read("map.csv");
+    let column = |name: &str| {
+        let place = rows.lines().next().unwrap().split(',').position(|it| it == name).unwrap();
+        rows.lines().skip(1).map(|row| row.split(',').nth(place).unwrap()).collect::<Vec<_>>()
+    };
+    let one = format!("impact {bodies} --normal 0.15 --tangential 0.15 {name} --format json");
+    let one: Value = serde_json::from_str(&directory.run(&one).stdout).unwrap();
+    assert_eq!(column("eps_t"), ["NaN", &one["eps_t"].as_f64().unwrap().to_string()]);
+    assert!(!column("switch_count").contains(&"-1"), "{rows}");
+    assert!(directory.read("map.svg").contains("stay together"));
     let plotted = directory.run(&format!("{held} --plot held.svg"));
     assert!(plotted.code == 1 && plotted.stderr.contains("stay together"), "{}", plotted.stderr);
     let plotted = directory.run(&format!("collide --kappa 18 --psi 0.6 {scaled} --plot ends.svg"));

@@ -9,6 +9,7 @@ use stickslip_solver::Number;
 
 use super::decay::{Decay, Jet, product};
 use super::exponents::Exponents;
+use super::hysteresis::{Hysteresis, Yielding};
 use super::{
     ContactMode, DAMPING, DASHPOT, FAR_GAP, FAR_RATE, GAP, GUARDS, ModeProgress, RATE, SPRING,
     STATE, Stage, T as TIME, U, V, W,
@@ -47,7 +48,8 @@ impl<T> Index<u8> for Powers<T> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Equations {
     pub exponents: Exponents,
-    /// The factor of a hysteretic force while the overlap falls, 1 + a.
+    hysteresis: Option<Hysteresis>,
+    /// The factor of a hysteretic force while the overlap falls, or 1.
     rebound: f64,
     kappa: f64,
     damping: f64,
@@ -81,7 +83,8 @@ impl Equations {
         let exponents = Exponents::new(contact);
         let kappa = contact.kappa();
         let a = if exponents.damped { contact.damping() } else { 0.0 };
-        let rebound = if exponents.hysteretic { 1.0 + contact.damping() } else { 1.0 };
+        let hysteresis = Hysteresis::new(contact.law(), contact.damping());
+        let rebound = hysteresis.map_or(1.0, |it| it.factor);
         let strong = a >= STRONG;
         let by_v = if strong { a.powi(-3) } else { 1.0 };
         let omega = if exponents.remembers { kappa.sqrt() } else { 0.0 };
@@ -91,6 +94,7 @@ impl Equations {
         Self {
             exponents,
             decay: Decay::new(&contact.law().friction, velocity_unit),
+            hysteresis,
             rebound,
             kappa,
             damping: a,
@@ -129,6 +133,25 @@ impl Equations {
     #[inline(always)]
     pub fn is_frictionless(&self) -> bool {
         !self.exponents.remembers && self.dashpot == 0.0
+    }
+
+    /// Whether the bodies yield.
+    pub fn yields(&self) -> bool {
+        self.hysteresis.is_some_and(|it| it.yielding.is_some())
+    }
+
+    /// The part of F/u^d that depends on u where the bodies yield, with its derivatives by u.
+    #[inline(always)]
+    fn tangent_force<T: Number>(&self, stage: Stage, u: &Powers<T>) -> Option<[T; 3]> {
+        if stage != Stage::Yielding {
+            return None;
+        }
+        let Yielding { slope, offset, .. } = self.hysteresis?.yielding?;
+        let inverse = u[0] / u[1];
+        let [first, third] = [inverse * slope, inverse * inverse * inverse * offset];
+        let value = first - third;
+        let slope = (third * 3.0 - first) * inverse;
+        Some([value, slope, (first * 2.0 - third * 12.0) * inverse * inverse])
     }
 
     /// Whether friction depends on the velocity.
@@ -171,6 +194,9 @@ impl Equations {
     /// F/u^d, whose sign is that of the normal force.
     #[inline(always)]
     fn push<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> T {
+        if let Some([push, ..]) = self.tangent_force(stage, u) {
+            return push;
+        }
         let factor = if stage == Stage::Unloading { self.rebound } else { 1.0 };
         y[V] * self.force_by_v + u[self.exponents.bend] * (self.force_by_u * factor)
     }
@@ -284,10 +310,13 @@ impl Equations {
         // dv/ds = −n u^k F/u^d, with k = n − 1 + d.
         let k = e.last + e.d;
         let dv = u[k] * push * -n;
-        let elastic = lowered(u, e.bend);
+        let [elastic, bent] = match self.tangent_force(mode.stage, u) {
+            Some([_, slope, bend]) => [slope, bend],
+            None => [lowered(u, e.bend), twice_lowered(u, e.bend)],
+        };
         let push1 = elastic * v + dv * damping;
         let ddv = (lowered(u, k) * v * push + u[k] * push1) * -n;
-        let push2 = twice_lowered(u, e.bend) * v * v + elastic * dv + ddv * damping;
+        let push2 = bent * v * v + elastic * dv + ddv * damping;
         let force = lifted(e.d - of.shared, u, v, dv, Jet(push, push1, push2));
 
         let pull = self.pull(mode.stage, u, y);
@@ -349,7 +378,13 @@ impl Equations {
             }
         };
         let reversal = if self.decays() { y[W] * mode.heading.sign() } else { y[W] };
-        [end, same, other, v, reversal]
+        let turn = match self.hysteresis {
+            Some(Hysteresis { yielding: Some(it), .. }) if mode.stage == Stage::Main => {
+                T::from(it.from) - u[e.n]
+            }
+            _ => v,
+        };
+        [end, same, other, turn, reversal]
     }
 
     /// The guard with which a stick phase is left whose limit has fallen to zero in the state `y`,
@@ -381,6 +416,9 @@ impl Equations {
             let behind = self.rubbed(mode, y, push * sign)
                 - w * (side * self.damping * self.tangential_damping);
             sum = sum + power(e.d) * v * behind * ahead;
+        }
+        if let Some([_, slope, _]) = self.tangent_force(mode.stage, u) {
+            sum = sum - self.rubbed(mode, y, power(e.d + 1) * v * slope);
         }
         if e.bend > 0 {
             sum = sum - self.rubbed(mode, y, power(e.p) * v * (sign * f64::from(e.bend)));
@@ -487,29 +525,20 @@ impl Equations {
         let carried = i32::from(e.of(Stage::Main).rho) - i32::from(e.of(Stage::Unloading).rho);
         let mut y = *y;
         y[SPRING] *= y[U].powi(carried);
-        if e.hysteretic {
+        if let Some(Hysteresis { turned, lost, .. }) = self.hysteresis {
             // The force is the same before and behind, and all energy is in the compression.
-            y[U] *= self.rebound.powf(-1.0 / f64::from(e.p));
-            y[DAMPING] = 0.5 * self.lost_part();
+            y[U] *= turned;
+            y[DAMPING] = 0.5 * lost;
         }
         y
     }
 
-    /// The part of the greatest overlap that is left where a hysteretic force ends, which is the
-    /// part of the energy that it takes.
-    fn lost_part(&self) -> f64 {
-        let e = self.exponents;
-        -(-f64::from(e.n) / f64::from(e.p) * self.rebound.ln()).exp_m1()
-    }
-
     /// The overlap that a hysteretic force leaves in a stage.
     pub fn left_over(&self, stage: Stage) -> f64 {
-        let e = self.exponents;
-        if !e.hysteretic || stage != Stage::Unloading {
-            return 0.0;
+        match self.hysteresis {
+            Some(it) if stage == Stage::Unloading => it.left,
+            _ => 0.0,
         }
-        let greatest = if e.n == e.p { 1.0 } else { 1.25_f64.powf(0.4) };
-        greatest * self.lost_part()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The powers of u in a law.
 
 use super::Stage;
+use super::hysteresis::Hysteresis;
 use crate::contact::Contact;
 use crate::law::{Damping, HistoryOf, Law, Normal, Tangential};
 
@@ -15,7 +16,8 @@ use crate::law::{Damping, HistoryOf, Law, Normal, Tangential};
 ///
 /// where h is the history, scaled by a power of x: what is rescaled while the overlap falls is
 /// constant then over √x. Without damping d = p and F = u^p. A hysteretic force is the same with
-/// x − x₀ in place of x while the overlap falls, and with a factor.
+/// x − x₀ in place of x while the overlap falls, and with a factor; where it yields, F/u^d is no
+/// polynomial.
 #[expect(clippy::struct_excessive_bools, reason = "each leaves out a term of the equations")]
 #[derive(Clone, Copy, Debug)]
 pub struct Exponents {
@@ -95,7 +97,7 @@ impl Exponents {
         let unloading = stage(if rescaled { half } else { 0 });
         let (loading, bend) = (stage(0), p - d);
         let remembers = law.remembers();
-        let hysteretic = law.damping.is_hysteretic();
+        let hysteretic = Hysteresis::new(law, contact.damping()).is_some();
         Self {
             n,
             last,

@@ -25,11 +25,16 @@ pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, Fi
         }))
         .collect::<Vec<_>>()
         .join(", ");
+    let restitution = if grid.law.normal.is_adhesive() {
+        "tangential restitution ε_t (grey: stay together)"
+    } else {
+        "tangential restitution ε_t"
+    };
     let panel = |heading, values| panel(grid, heading, size, values);
     map::draw(
         &title,
         &[
-            panel("tangential restitution ε_t", MapValues::Restitution(&results.eps_t)),
+            panel(restitution, MapValues::Restitution(&results.eps_t)),
             panel("number of switches", MapValues::Switches(&results.switch_count)),
         ],
     )
@@ -70,6 +75,7 @@ fn parameters(grid: &Grid) -> Vec<(&'static str, f64)> {
             match pair.damping_constant() {
                 ("damping_time_s", time) => ("A s", time),
                 ("unloading_stiffness_ratio", ratio) => ("k₂/k₁", ratio),
+                ("yield_velocity_m_per_s", velocity) => ("v_y m/s", velocity),
                 (_, hardening) => ("hardening 1/m", hardening),
             },
         ],

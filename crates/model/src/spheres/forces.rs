@@ -19,6 +19,7 @@ use crate::restitution;
 /// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
 /// F_t = r γ ξ^e g              (without history)
 /// F_n = k ξ, k₂ (ξ − ξ₀)       (hysteretic) while ξ grows and falls; F_t = k_t ζ
+/// F_n = ρ ξ^{3/2}, its tangent from ξ_y on, ρ √r (ξ − ξ₀)^{3/2}   (yielding)
 /// F_n = ρ ξ^{3/2} − 4πγ_s R    (dmt)       and |F_t| ≤ μ (ρ ξ^{3/2} + 4πγ_s R)
 /// μ = μ_d + (μ_s − μ_d) e^(−β |g|)   where friction decays
 /// ```
@@ -63,6 +64,13 @@ pub struct Constants {
     /// What k₂/k₁ − 1 is in 1/m of the greatest overlap, where the damping is `hardening`. Luding's
     /// law has (k₂ᵐᵃˣ/k₁ − 1)/ξ*, and Walton's and Braun's k₂ = k₁ + S F has S.
     pub hardening_per_m: Option<f64>,
+    /// Least normal velocity v_y at which the bodies yield, ½ m v_y² = (2/5) ρ ξ_y^{5/2}, where the
+    /// damping is `yielding`.
+    pub yield_velocity_m_per_s: Option<f64>,
+    /// Instead of that, the greatest contact pressure p_y up to which they are elastic:
+    /// ξ_y = R (π p_y/2E*)², with E* = 3ρ/(4√R). It is about 1.6 times the yield stress of the
+    /// softer body.
+    pub yield_pressure_pa: Option<f64>,
     /// Surface energy γ_s of adhesion in J/m²: half the work of adhesion, and what LAMMPS takes as
     /// the fourth number of `dmt` and `jkr`.
     pub surface_energy_j_per_m2: Option<f64>,
@@ -100,6 +108,8 @@ enum Dashpot {
     Scaled(f64, f64),
     /// What [`Units::damping`] takes of a hysteretic force.
     Hysteretic(f64),
+    /// The greatest pressure without yield, in Pa.
+    Pressure(f64),
 }
 
 impl Forces {
@@ -184,13 +194,27 @@ impl Forces {
     }
 
     /// Elastic constant, and the surface with the constants of stiffness and damping, for an
-    /// effective mass and materials with the elastic constant `hertz` and Mindlin's `mindlin`.
-    pub(super) fn resolved(&self, mass_kg: f64, hertz: f64, mindlin: f64) -> (f64, Surface) {
+    /// effective mass and radius and materials with the elastic constant `hertz` and this ratio
+    /// 4G*/E* of stiffnesses.
+    pub(super) fn resolved(
+        &self,
+        (mass_kg, radius_m): (f64, f64),
+        hertz: f64,
+        stiffness_ratio: f64,
+    ) -> (f64, Surface) {
+        let mindlin = 1.5 * stiffness_ratio * hertz;
         let elastic = self.elastic.unwrap_or(hertz);
         let damping_time_s = match self.dashpot {
             Dashpot::Coefficient(gamma) => gamma / elastic,
             Dashpot::Time(time) | Dashpot::Hysteretic(time) => time,
             Dashpot::Ratio(ratio) => ratio * (mass_kg / elastic).sqrt(),
+            Dashpot::Pressure(pressure) => {
+                // The radius of contact over that of the bodies.
+                let modulus = 0.75 * elastic / radius_m.sqrt();
+                let share = 0.5 * std::f64::consts::PI * pressure / modulus;
+                let overlap = radius_m * share * share;
+                1.0 / (0.8 * elastic / mass_kg * overlap * overlap * overlap.sqrt()).sqrt()
+            }
             Dashpot::Scaled(damping, normal_m_per_s) => {
                 let units = Units::new(self.law, elastic / mass_kg, normal_m_per_s);
                 damping / units.damping(1.0)
@@ -232,6 +256,7 @@ impl Dashpot {
         );
         let [has_ratio, damped] = [critical.is_some(), law.damping != Damping::None];
         let viscous = law.damping.is_viscous();
+        let yields = law.damping == Damping::Yielding;
         // What may be given, and whether the law has it.
         let all = [
             (&quantity::DAMPING_COEFFICIENT, c.damping_coefficient, viscous),
@@ -244,6 +269,8 @@ impl Dashpot {
                 law.damping == Damping::Hysteretic,
             ),
             (&quantity::HARDENING, c.hardening_per_m, law.damping == Damping::Hardening),
+            (&quantity::YIELD_VELOCITY, c.yield_velocity_m_per_s, yields),
+            (&quantity::YIELD_PRESSURE, c.yield_pressure_pa, yields),
             (&quantity::NORMAL_RESTITUTION, c.e_n, damped),
         ];
         let mut given: Option<(&PhysicalQuantity, f64)> = None;
@@ -285,6 +312,12 @@ impl Dashpot {
             }
             name if name == quantity::UNLOADING_RATIO.name => Self::Hysteretic(value - 1.0),
             name if name == quantity::HARDENING.name => Self::Hysteretic(value),
+            name if name == quantity::YIELD_VELOCITY.name => Self::Hysteretic(1.0 / value),
+            name if name == quantity::YIELD_PRESSURE.name => Self::Pressure(value),
+            name if yields && value == 1.0 => {
+                let expected = "below 1 where bodies yield: without, take Hertz' law";
+                return Err(InvalidValue::new(name, value, expected).into());
+            }
             _ if law.damping == Damping::Hysteretic => {
                 Self::Hysteretic(restitution::damping(law, value)?)
             }
@@ -302,6 +335,9 @@ fn without_damping(law: Law, has_time: bool, has_ratio: bool) -> InvalidValue {
     match law.damping {
         Damping::Hysteretic => return missing(quantity::UNLOADING_RATIO.name, "it or e_n"),
         Damping::Hardening => return missing(quantity::HARDENING.name, "it or e_n"),
+        Damping::Yielding => {
+            return missing(quantity::YIELD_VELOCITY.name, "it, yield_pressure_pa or e_n");
+        }
         _ => {}
     }
     let expected = match (has_time, has_ratio) {

@@ -83,6 +83,12 @@ pub const UNLOADING_RATIO: PhysicalQuantity = PhysicalQuantity {
 /// Growth of the unloading stiffness with the greatest overlap, k₂/k₁ − 1 over this overlap.
 pub const HARDENING: PhysicalQuantity =
     not_negative("hardening_per_m", "a finite number, 0 or above, in 1/m");
+/// Least normal velocity v_y at which bodies yield.
+pub const YIELD_VELOCITY: PhysicalQuantity =
+    positive("yield_velocity_m_per_s", "a finite number above 0, in m/s");
+/// Greatest contact pressure p_y up to which bodies are elastic.
+pub const YIELD_PRESSURE: PhysicalQuantity =
+    positive("yield_pressure_pa", "a finite number above 0, in Pa");
 /// Surface energy γ of adhesion.
 pub const SURFACE_ENERGY: PhysicalQuantity =
     positive("surface_energy_j_per_m2", "a finite number above 0, in J/m²");

@@ -88,7 +88,7 @@ impl BodyPair {
         let hertz = 4.0 / 3.0 * modulus * effective_radius_m.sqrt();
         let stiffness_ratio = 4.0 * shear_modulus / modulus;
         let (elastic_constant, surface) =
-            forces.resolved(effective_mass_kg, hertz, 1.5 * stiffness_ratio * hertz);
+            forces.resolved((effective_mass_kg, effective_radius_m), hertz, stiffness_ratio);
         surface.validate()?;
         let alpha = 1.0 / (1.0 + effective_mass_kg * (one.turning + two.turning));
         let pull_off = forces.pull_off_n(effective_radius_m);
@@ -146,6 +146,7 @@ impl BodyPair {
         match self.law.damping {
             Damping::Hysteretic => (quantity::UNLOADING_RATIO.name, 1.0 + constant),
             Damping::Hardening => (quantity::HARDENING.name, constant),
+            Damping::Yielding => (quantity::YIELD_VELOCITY.name, 1.0 / constant),
             _ => (quantity::DAMPING_TIME.name, constant),
         }
     }

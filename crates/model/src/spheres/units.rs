@@ -26,7 +26,7 @@ impl Units {
     }
 
     /// The scaled damping a of a damping time in s, to which it is proportional; of a hysteretic
-    /// force, of k₂/k₁ − 1, or of its growth with the greatest overlap in 1/m.
+    /// force, of k₂/k₁ − 1, or of its growth with the greatest overlap in 1/m, or of 1/v_y in s/m.
     pub fn damping(&self, damping_time_s: f64) -> f64 {
         let &Self { law, beta, time, length } = self;
         match (law.normal, law.damping) {
@@ -35,6 +35,7 @@ impl Units {
             (Normal::Linear, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
             (_, Damping::Viscoelastic) => damping_time_s / time,
             (_, Damping::Hysteretic) => damping_time_s,
+            (_, Damping::Yielding) => damping_time_s * length / time,
             (Normal::Linear, Damping::Hardening) => damping_time_s * length,
             (_, Damping::Hardening) => damping_time_s * 1.25_f64.powf(0.4) * length,
             (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),

@@ -240,6 +240,14 @@ fn restitution_in_closed_form_is_that_of_a_run() {
         }
     }
     let undamped = presets::find("yade/FrictPhys_CundallStrack").unwrap().law;
+    // An ε_n that the search meets by chance.
+    for name in ["gran/hertz/history", "granular/hooke/linear_history", "paper"] {
+        let law = presets::find(name).unwrap().law;
+        for a in [0.5, 1.0, 2.0] {
+            let back = restitution::damping(law, restitution::eps_n(law, a).unwrap()).unwrap();
+            assert!((back - a).abs() < 1e-9, "{name} {a} {back}");
+        }
+    }
     assert!(restitution::damping(undamped, 0.9).is_err());
     assert_eq!(restitution::damping(undamped, 1.0), Ok(0.0));
     assert!(restitution::damping(Law::PAPER, 0.0).is_err());

@@ -3,7 +3,8 @@
 use stickslip_model::spheres::{Body, Encounter, ImpactReport, Sphere};
 use stickslip_model::spheres::{BodyPair, Constants, Forces, Material, Surface};
 use stickslip_model::{
-    Contact, ContactEnd, Damping, Engine, HistoryOf, Law, Normal, Tangential, presets, restitution,
+    Contact, ContactEnd, Damping, Engine, HistoryOf, Law, Normal, Tangential, Tolerances, presets,
+    restitution,
 };
 
 use crate::common::file;
@@ -120,14 +121,130 @@ fn the_course_keeps_the_overlap_that_is_left() {
     assert!((end.compression - 0.75).abs() < 1e-10, "{end:?}");
 }
 
+fn yielding() -> Law {
+    presets::find("thornton").unwrap().law
+}
+
+/// 100 contacts of bodies that yield, integrated in plain time by another program.
+#[test]
+fn contacts_that_yield_are_those_of_another_program() {
+    let reference = file("yielding_contacts");
+    let cases = reference["cases"].as_array().unwrap();
+    for case in cases {
+        let number = |name: &str| case[name].as_f64().unwrap();
+        let law = Law { end: ContactEnd::Force, ..yielding() };
+        let found = collide(contact(number("kappa"), number("psi"), number("damping"), law));
+        let expected = [number("eps_t"), number("eps_n"), number("time")];
+        let own = [found.eps_t(), found.eps_n, found.contact_time];
+        let close = expected.iter().zip(own).all(|(expected, own)| (expected - own).abs() < 1e-7);
+        assert!(close, "{own:?} {case}");
+        assert_eq!(found.itinerary(), case["itinerary"].as_str().unwrap(), "{case}");
+    }
+    assert_eq!(cases.len(), 100);
+}
+
+/// Thornton, J. Appl. Mech. 64, 383 (1997), eq. 45, and 1 up to the yield velocity.
+#[test]
+fn the_restitution_of_bodies_that_yield_is_thorntons() {
+    let law = yielding();
+    for damping in [0.0, 0.5, 1.0, 1.0 + 1e-9, 1.1, 4.0, 100.0, 1e4] {
+        let ratio = 1.0 / f64::max(damping, 1.0);
+        let part = ratio / (ratio + 2.0 * (1.2 - 0.2 * ratio * ratio).sqrt());
+        let square = 1.2 * 3.0_f64.sqrt() * (1.0 - ratio * ratio / 6.0) * part.sqrt();
+        let found = collide(contact(4.0, 0.7, damping, law));
+        assert!((found.eps_n - square.sqrt()).abs() < 1e-12, "{damping} {}", found.eps_n);
+        assert!((restitution::eps_n(law, damping).unwrap() - square.sqrt()).abs() < 1e-14);
+        assert!(found.energy.normal_unbalanced().abs() < 1e-12, "{:?}", found.energy);
+        assert!(found.energy.tangential_unbalanced().abs() < 1e-12);
+        if damping > 1.0 + 1e-6 {
+            let back = restitution::damping(law, square.sqrt()).unwrap();
+            assert!((back / damping - 1.0).abs() < 1e-11, "{back} {damping}");
+        }
+        let slides = collide(contact(4.0, 4.0, damping, law));
+        assert!((slides.eps_t() - 1.0 + (1.0 + slides.eps_n) / 4.0).abs() < 1e-12);
+    }
+    assert!(restitution::depends_on_velocity(law));
+    assert_eq!(format!("{:.2}", restitution::eps_n(law, 4.0).unwrap()), "0.81");
+    // Without yield it is Hertz' law.
+    let elastic = Law { damping: Damping::None, ..law };
+    let of = |damping: f64, law: Law| collide(contact(12.0, 0.5, damping, law)).eps_t();
+    assert!((of(1.0, law) - of(0.0, elastic)).abs() < 1e-11);
+    assert!((of(1.0 + 1e-7, law) - of(0.0, elastic)).abs() < 1e-6);
+}
+
+/// The yield velocity in SI units, and from the pressure in the contact.
+#[test]
+fn bodies_yield_from_a_velocity_or_a_pressure_on() {
+    let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    let sphere = Sphere::homogeneous(1e-3, &steel);
+    let usual = Constants {
+        friction: 0.3,
+        tangential_stiffness_kg_per_s2: Some(1e7),
+        ..Constants::default()
+    };
+    let pair = |constants: &Constants| {
+        let forces = Forces::new(yielding(), constants)?;
+        Ok::<_, stickslip_model::CollisionError>(
+            BodyPair::new(&sphere, &Body::Sphere(sphere), forces).unwrap(),
+        )
+    };
+    let pressure = Constants { yield_pressure_pa: Some(1e9), ..usual };
+    let found = pair(&pressure).unwrap();
+    // Thornton's eq. 43: v_y = (π/2E*)² √(8πR³/(15m)) p_y^{5/2}, with 1/m' = 2/m.
+    let (modulus, radius) = (0.5 * 210e9 / (1.0 - 0.09), 5e-4_f64);
+    let factor = (std::f64::consts::PI / (2.0 * modulus)).powi(2);
+    let root = 8.0 * std::f64::consts::PI * radius.powi(3) / (15.0 * found.effective_mass_kg);
+    let velocity = factor * root.sqrt() * 1e9_f64.powf(2.5);
+    let (name, constant) = found.damping_constant();
+    assert_eq!(name, "yield_velocity_m_per_s");
+    assert!((constant / velocity - 1.0).abs() < 1e-12, "{constant} {velocity}");
+    let same = Constants { yield_velocity_m_per_s: Some(velocity), ..usual };
+    for speed in [0.5 * velocity, 20.0 * velocity] {
+        let of =
+            |constants| collide(pair(constants).unwrap().impact(speed, speed).unwrap().contact);
+        assert!((of(&pressure).eps_t() - of(&same).eps_t()).abs() < 1e-10);
+        assert_eq!(of(&same).eps_n < 1.0 - 1e-9, speed > velocity);
+    }
+    let e_n = Constants { e_n: Some(0.6), e_n_at_m_per_s: Some(2.0), ..usual };
+    let found = collide(pair(&e_n).unwrap().impact(2.0, 1.0).unwrap().contact);
+    assert!((found.eps_n - 0.6).abs() < 1e-12);
+    for (constants, expected) in [
+        (usual, "yield_velocity_m_per_s is missing"),
+        (Constants { yield_pressure_pa: Some(-1.0), ..usual }, "expected a finite number above 0"),
+        (Constants { yield_pressure_pa: Some(1e9), ..same }, "are both given"),
+        (Constants { e_n: Some(1.0), ..e_n }, "expected below 1"),
+        (Constants { hardening_per_m: Some(1.0), ..usual }, "has no meaning in this law"),
+    ] {
+        let error = pair(&constants).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+/// Both pairs find the same switches, whatever yields when.
+#[test]
+fn both_pairs_agree_on_contacts_that_yield() {
+    let mut random = fastrand::Rng::with_seed(383);
+    let mut log = |low: f64, high: f64| low * (high / low).powf(random.f64());
+    for _ in 0..200 {
+        let [kappa, psi, damping] = [log(0.1, 1e5), log(1e-2, 1e2), log(1.0, 1e3)];
+        let law = Law { history: HistoryOf::Force, ..yielding() };
+        let contact = contact(kappa, psi, damping, law);
+        let one = collide(contact);
+        let (other, _) = Engine::Dopri5(Tolerances::DOPRI5).collide(contact).unwrap();
+        assert_eq!(one.itinerary(), other.itinerary(), "{contact:?}");
+        let apart = psi * (one.eps_t() - other.eps_t()).abs();
+        assert!(apart < 1e-9, "{contact:?} {apart:e}");
+    }
+}
+
 /// Every combination with a hysteretic force runs or is refused with the reason.
 #[test]
 fn combinations_with_hysteresis_run_or_are_refused() {
     let mut ran = 0;
     for law in laws() {
-        for damping in [Damping::Hysteretic, Damping::Hardening] {
+        for damping in [Damping::Hysteretic, Damping::Hardening, Damping::Yielding] {
             let law = Law { damping, ..law };
-            let made = Contact::new(3.0, 0.4, 0.5).and_then(|it| it.with_law(law, 0.0));
+            let made = Contact::new(3.0, 0.4, 1.5).and_then(|it| it.with_law(law, 0.0));
             let steady = law.tangential == Tangential::Constant && !law.rescaled;
             match made {
                 Ok(contact) => {
@@ -136,8 +253,10 @@ fn combinations_with_hysteresis_run_or_are_refused() {
                     ran += 1;
                 }
                 Err(error) => {
-                    assert!(!steady, "{law:?}");
-                    let expected = "a spring of constant stiffness";
+                    let yields = damping == Damping::Yielding && law.normal != Normal::Hertz;
+                    assert!(!steady || yields, "{law:?}");
+                    let expected =
+                        if yields { "a force of Hertz" } else { "a spring of constant stiffness" };
                     assert!(error.to_string().contains(expected), "{error}");
                 }
             }

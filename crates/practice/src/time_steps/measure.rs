@@ -160,7 +160,7 @@ fn stepped(settings: &TimeStepSettings, steps: f64, exact: &Collision) -> Vec<Op
     let dt = undamped_contact_time(exact.contact.law()) / steps;
     let phases = (0..settings.phases).map(|index| phase(settings, index));
     phases
-        .map(|phase| step(&exact.contact, dt, phase, settings.scheme, exact.contact_time))
+        .map(|phase| step(&exact.contact, dt, phase, &settings.stepping, exact.contact_time))
         .collect()
 }
 
@@ -204,9 +204,9 @@ fn value(
         SteppedQuantity::TangentialRestitution => eps_t,
         SteppedQuantity::NormalRestitution => eps_n,
         SteppedQuantity::Energy => {
-            let ratio = settings.reduction.ratio(contact.psi());
+            let ratio = settings.stepping.reduction.ratio(contact.psi());
             // Tangential over normal energy before the contact.
-            let share = settings.reduction.alpha * ratio * ratio;
+            let share = settings.stepping.reduction.alpha * ratio * ratio;
             let (normal, tangential) = (1.0 / (1.0 + share), 1.0 / (1.0 + 1.0 / share));
             normal * eps_n * eps_n + tangential * eps_t * eps_t
         }

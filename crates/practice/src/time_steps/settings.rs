@@ -3,7 +3,7 @@
 use stickslip_model::spheres::quantity;
 use stickslip_model::{Contact, GivenValue, InvalidValue, Reduction};
 
-use super::stepped::Scheme;
+use super::stepped::Stepping;
 
 /// The impacts and time steps whose errors are measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,11 +16,8 @@ pub struct TimeStepSettings {
     /// The number n of start phases, from 1 to [`Self::MOST_PHASES`]: contacts begin after the
     /// parts (k + ½)/n of a step.
     pub phases: usize,
-    /// The scheme.
-    pub scheme: Scheme,
-    /// The numbers μ and α. Only the energy depends on them: its tangential part is (μ²/α) ψ² of
-    /// its normal part.
-    pub reduction: Reduction,
+    /// What a step is. The tangential part of the energy is (μ²/α) ψ² of its normal part.
+    pub stepping: Stepping,
 }
 
 impl Default for TimeStepSettings {
@@ -30,8 +27,7 @@ impl Default for TimeStepSettings {
             contacts: Vec::new(),
             steps_per_contact: vec![10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0],
             phases: 16,
-            scheme: Scheme::default(),
-            reduction: Reduction::default(),
+            stepping: Stepping::default(),
         }
     }
 }
@@ -77,7 +73,9 @@ impl TimeStepSettings {
             let given = format!("= {phases} with {impacts} impacts make too many contacts");
             return Err(invalid("phases", &given, format!("a product of at most {most}")));
         }
-        let Reduction { mu, alpha } = self.reduction;
+        let Stepping { overlap, reduction: Reduction { mu, alpha }, .. } = self.stepping;
+        let expected = "a number from 0 to 0.5, a part of the distance of the centres";
+        InvalidValue::check("overlap", overlap, expected, (0.0..=0.5).contains(&overlap))?;
         let accepted = mu > 0.0 && quantity::FRICTION.check(mu).is_ok();
         InvalidValue::check("mu", mu, "a finite number above 0", accepted)?;
         let accepted = quantity::INERTIA.check(alpha).is_ok();

@@ -1,8 +1,10 @@
 //! One collision in the steps of a particle code.
 
 use stickslip_model::{
-    Contact, ContactEnd, CoulombTest, Damping, HistoryOf, Law, Normal, Tangential, exact,
+    Contact, ContactEnd, CoulombTest, Damping, HistoryOf, Law, Normal, Reduction, Tangential, exact,
 };
+
+use super::turning::Turning;
 
 /// The duration of a contact with the normal force of `law` and without damping, in scaled units:
 /// π for a linear force, 3.218… for Hertz'.
@@ -35,6 +37,19 @@ impl Stepped {
     }
 }
 
+/// What a step is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stepping {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The greatest overlap of the contact without damping and friction over the distance of the
+    /// centres, for two equal spheres without spins whose normal turns; 0 for a normal that stands
+    /// still, as on a wall. The result is that of the normal with which the contact began.
+    pub overlap: f64,
+    /// The numbers μ and α, of which the motion of turning spheres depends.
+    pub reduction: Reduction,
+}
+
 /// Most steps of one contact.
 const MOST_STEPS: f64 = 1e9;
 /// How many times as long as it should a contact may last.
@@ -49,16 +64,17 @@ const LONGEST: f64 = 10.0;
 /// do it, with a force that is kept from attracting until the overlap vanishes. Without steps both
 /// are the same.
 ///
-/// `None` if the law has adhesion, if `dt` is not a finite number above 0, if `phase` is not from 0
+/// `None` if spheres that turn pass each other in a step, if the law has adhesion, if `dt` is not a finite number above 0, if `phase` is not from 0
 /// to below 1, if the contact has not ended after ten times `duration` (its duration without steps)
 /// or after 10⁹ steps, or if numbers are no longer finite.
 pub fn step(
     contact: &Contact,
     dt: f64,
     phase: f64,
-    scheme: Scheme,
+    stepping: &Stepping,
     duration: f64,
 ) -> Option<Stepped> {
+    let Stepping { scheme, overlap, reduction } = *stepping;
     if contact.law().normal.is_adhesive() {
         return None;
     }
@@ -70,20 +86,37 @@ pub fn step(
     let mut rule = ForceRule::new(contact, dt, scheme);
     let mut state =
         State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0, greatest: 0.0 };
+    let mut turning =
+        (overlap > 0.0).then(|| Turning::new(contact, overlap, reduction, phase * dt));
     let mut steps = 0;
     let mut stiffness: f64 = 0.0;
     loop {
-        state.x += dt * state.v;
+        if let Some(turning) = &mut turning {
+            let synchronized = scheme == Scheme::SynchronizedVerlet;
+            (state.x, state.v, state.w) = turning.advance(dt, synchronized);
+            if steps == 0 && state.x <= 0.0 && turning.parts() {
+                return None;
+            }
+        } else {
+            state.x += dt * state.v;
+        }
         if state.x > 0.0 {
             steps += 1;
             if steps as f64 > most {
                 return None;
             }
+            let (v, w) = (state.v, state.w);
             let Some(number) = rule.advance(&mut state) else { break };
             stiffness = stiffness.max(number);
+            if let Some(turning) = &mut turning {
+                turning.push(state.v - v, state.w - w);
+            }
         } else if steps > 0 || !state.v.is_finite() {
             break;
         }
+    }
+    if let Some(turning) = turning {
+        (state.v, state.w) = turning.velocities();
     }
     let stepped = Stepped { eps_n: -state.v, eps_t: state.w / contact.psi(), steps, stiffness };
     let finite = stepped.eps_n.is_finite() && stepped.eps_t.is_finite() && stiffness.is_finite();
@@ -143,13 +176,12 @@ impl ForceRule {
         let Self { law, dt, .. } = *self;
         let root = state.x.sqrt();
         state.greatest = state.greatest.max(state.x);
-        let (pushed, factor) = self.pushed(state);
-        let (elastic, slope) = match law.normal {
-            Normal::Linear => (factor * pushed, factor),
-            _ => (factor * pushed * pushed.sqrt(), 1.5 * factor * pushed.sqrt()),
+        let [elastic, slope] = match law.damping {
+            Damping::Yielding => self.yielding(state),
+            _ => self.elastic(state),
         };
         let eta = match law.damping {
-            Damping::None | Damping::Hysteretic | Damping::Hardening => 0.0,
+            Damping::None | Damping::Hysteretic | Damping::Hardening | Damping::Yielding => 0.0,
             Damping::Linear => self.damping,
             Damping::Viscoelastic => self.damping * root,
             Damping::Tsuji => self.damping * root.sqrt(),
@@ -169,6 +201,33 @@ impl ForceRule {
         state.w -= dt * tangential;
         let number = |k: f64, damping: f64| 0.25 * dt * (k * dt + 2.0 * damping);
         Some(f64::max(number(slope, eta), number(k, dashpot)))
+    }
+
+    /// The force without dashpot, and its slope.
+    fn elastic(&self, state: &State) -> [f64; 2] {
+        let (pushed, factor) = self.pushed(state);
+        match self.law.normal {
+            Normal::Linear => [factor * pushed, factor],
+            _ => [factor * pushed * pushed.sqrt(), 1.5 * factor * pushed.sqrt()],
+        }
+    }
+
+    /// The same of bodies that yield.
+    fn yielding(&self, state: &State) -> [f64; 2] {
+        let State { x, greatest, .. } = *state;
+        let from = (1.25 / (self.damping * self.damping)).powf(0.4);
+        let loading = |x: f64| {
+            let least = f64::min(x, from).sqrt();
+            [least * (1.5 * x - 0.5 * f64::min(x, from)), 1.5 * least]
+        };
+        if x == greatest || greatest <= from {
+            return loading(x);
+        }
+        // With the radius r the overlap falls by the r-th part of the greatest one.
+        let radius = greatest * greatest.sqrt() / loading(greatest)[0];
+        let pushed = f64::max(0.0, x - greatest * (1.0 - 1.0 / radius));
+        let root = (radius * pushed).sqrt();
+        [root * pushed, 1.5 * root]
     }
 
     /// The part of the overlap that pushes, and the factor of the stiffness.
@@ -235,7 +294,7 @@ impl ForceRule {
 
 /// A scheme of a particle code.
 ///
-/// Both advance velocity v and overlap x by leaps, v_{n+½} = v_{n−½} + dt f_n and
+/// All advance velocity v and overlap x by leaps, v_{n+½} = v_{n−½} + dt f_n and
 /// x_{n+1} = x_n + dt v_{n+½}. The force f_n is that at the overlap x_n and the velocity v_{n−½}.
 /// Velocity Verlet whose forces see the velocities of half steps (LAMMPS, MercuryDPM), leapfrog
 /// (YADE) and semi-implicit Euler (MFiX) are this same sequence. In each step, in this order: the
@@ -262,17 +321,24 @@ pub enum Scheme {
     /// x/v, but by a whole step at most, as in an older MFiX (truongd8593/mfix, commit 01e0f96,
     /// `calc_force_dem.f`, `DTSOLID_TMP`). What else is special there was not compared.
     Elapsed,
+    /// As [`Self::Lammps`], but velocities are taken along the normal in the middle of the step,
+    /// where they belong (`synchronized_verlet` of LAMMPS, pull request 4351; read in
+    /// `granular_model.cpp`, commit 14dc2fb). Without an [overlap](Stepping::overlap) it is the
+    /// same.
+    #[serde(rename = "synchronized_verlet")]
+    SynchronizedVerlet,
 }
 
 impl Scheme {
     /// All schemes.
-    pub const ALL: [Self; 2] = [Self::Lammps, Self::Elapsed];
+    pub const ALL: [Self; 3] = [Self::Lammps, Self::Elapsed, Self::SynchronizedVerlet];
 
-    /// The name of the scheme: `lammps` or `elapsed`.
+    /// The name of the scheme: `lammps`, `elapsed` or `synchronized_verlet`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lammps => "lammps",
             Self::Elapsed => "elapsed",
+            Self::SynchronizedVerlet => "synchronized_verlet",
         }
     }
 

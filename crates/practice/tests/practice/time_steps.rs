@@ -1,10 +1,10 @@
 //! What is promised of errors of time steps.
 
-use stickslip_model::{Contact, ContactEnd, Engine, Law, exact, presets};
+use stickslip_model::{Contact, ContactEnd, Engine, Law, Reduction, exact, presets};
 use stickslip_plane::progress::{self, Progress};
 use stickslip_practice::time_steps::{
-    self, Scheme, Status, Stepped, SteppedQuantity, TimeStepSettings, TimeSteps, TimeStepsError,
-    step, undamped_contact_time,
+    self, Scheme, Status, Stepped, SteppedQuantity, Stepping, TimeStepSettings, TimeSteps,
+    TimeStepsError, step, undamped_contact_time,
 };
 
 /// The contact of a law that has a name, with κ, ψ, damping and tangential damping.
@@ -27,7 +27,7 @@ pub fn run(contacts: Vec<Contact>, steps: &[f64]) -> TimeSteps {
 pub fn stepped(contact: &Contact, steps: f64, phase: f64) -> Option<Stepped> {
     let dt = undamped_contact_time(contact.law()) / steps;
     let (collision, _) = Engine::Auto.collide(*contact).expect("a collision");
-    step(contact, dt, phase, Scheme::Lammps, collision.contact_time)
+    step(contact, dt, phase, &Stepping::default(), collision.contact_time)
 }
 
 #[test]
@@ -176,18 +176,71 @@ fn an_elapsed_first_step_is_more_accurate() {
         let settings = TimeStepSettings {
             contacts: vec![contact],
             steps_per_contact: vec![1000.0],
-            scheme,
+            stepping: Stepping { scheme, ..Stepping::default() },
             ..TimeStepSettings::default()
         };
         let result = time_steps::run(&settings, progress::SILENT).expect("errors");
         result.rows[0].eps_t.expect("errors").root_mean_square
     };
-    let [whole, elapsed] = Scheme::ALL.map(error);
+    let [whole, elapsed, same] = Scheme::ALL.map(error);
+    assert_eq!(whole, same);
     assert!(elapsed < 0.2 * whole, "{whole} {elapsed}");
     for scheme in Scheme::ALL {
         assert_eq!(Scheme::find(scheme.name()), Some(scheme));
     }
     assert_eq!(Scheme::find("verlet"), None);
+}
+
+/// 24 contacts whose normal turns, integrated in polar coordinates by another program.
+#[test]
+fn turning_contacts_are_those_of_another_program() {
+    let text = include_str!("../../../../tests/data/turning_contacts.json");
+    let reference: serde_json::Value = serde_json::from_str(text).expect("JSON");
+    let cases = reference["cases"].as_array().expect("cases");
+    let mut errors = [0.0; 2];
+    for case in cases {
+        let number = |name: &str| case[name].as_f64().expect("a number");
+        let law = if number("power") == 1.0 { "gran/hooke/history" } else { "paper" };
+        let contact = contact(law, [number("kappa"), number("psi"), 0.0, 0.0]);
+        let reduction = Reduction { mu: number("mu"), alpha: number("alpha") };
+        let dt = undamped_contact_time(contact.law()) / 1e4;
+        let found = [Scheme::Lammps, Scheme::SynchronizedVerlet].map(|scheme| {
+            let stepping = Stepping { scheme, overlap: number("overlap"), reduction };
+            let found = step(&contact, dt, 0.5, &stepping, 10.0).expect("an end");
+            let off = (found.eps_t - number("eps_t")).abs();
+            let apart = (found.eps_n - number("eps_n")).abs();
+            assert!(off.max(apart) < 2e-3, "{scheme:?} {found:?} {case}");
+            off.max(apart)
+        });
+        for (sum, found) in errors.iter_mut().zip(found) {
+            *sum += found;
+        }
+        // With a small overlap it is a normal that stands still.
+        let still = step(&contact, dt, 0.5, &Stepping::default(), 10.0).expect("an end");
+        let turned = [1e-4, 1e-5, 1e-6].map(|overlap| {
+            let stepping = Stepping { scheme: Scheme::Lammps, overlap, reduction };
+            let found = step(&contact, dt, 0.5, &stepping, 10.0).expect("an end");
+            (found.eps_t - still.eps_t).abs()
+        });
+        assert!(turned[2] < 1e-4 && turned[2] <= turned[0], "{turned:?} {case}");
+    }
+    assert_eq!(cases.len(), 24);
+    // The numbers of docs/particle-codes.md.
+    let stepping = Stepping { overlap: 0.01, ..Stepping::default() };
+    let hooke = contact("gran/hooke/history", [3.0, 2.0, 0.0, 0.0]);
+    let found = step(&hooke, 1e-4, 0.5, &stepping, 4.0).expect("an end");
+    let rounded = [found.eps_t, found.eps_n].map(|number| format!("{number:.2}"));
+    assert_eq!(rounded, ["0.14", "0.82"]);
+    // What belongs to the middle of a step is more accurate there.
+    assert!(errors[1] < errors[0], "{errors:?}");
+}
+
+/// Without friction and at grazing impacts spheres pass each other.
+#[test]
+fn spheres_that_pass_each_other_in_a_step_have_no_contact() {
+    let contact = contact("paper", [1.0, 200.0, 0.0, 0.0]);
+    let stepping = Stepping { overlap: 0.4, ..Stepping::default() };
+    assert_eq!(step(&contact, 0.3, 0.5, &stepping, 3.2), None);
 }
 
 /// Sliding throughout, the tangential velocity falls by the normal momentum, in steps too.
@@ -238,6 +291,14 @@ fn settings_out_of_range_are_refused() {
     assert!(message(|it| it.steps_per_contact.push(1.1e7)).ends_with(expected));
     assert_eq!(message(|it| it.phases = 0), "phases = 0 is out of range; expected 1 to 4096");
     assert!(message(|it| it.phases = 4097).starts_with("phases = 4097"));
-    assert!(message(|it| it.reduction.mu = 0.0).starts_with("mu = 0.0 is out of range"));
-    assert!(message(|it| it.reduction.alpha = 1.5).starts_with("alpha = 1.5 is out of range"));
+    for overlap in [-0.1, 0.6, f64::NAN] {
+        let mut settings = usual.clone();
+        settings.stepping.overlap = overlap;
+        let error = time_steps::run(&settings, progress::SILENT).expect_err("a refusal");
+        assert!(error.to_string().contains("a number from 0 to 0.5"), "{error}");
+    }
+    assert!(message(|it| it.stepping.reduction.mu = 0.0).starts_with("mu = 0.0 is out of range"));
+    assert!(
+        message(|it| it.stepping.reduction.alpha = 1.5).starts_with("alpha = 1.5 is out of range")
+    );
 }

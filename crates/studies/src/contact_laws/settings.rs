@@ -98,7 +98,9 @@ impl ContactLawSettings {
         damped: bool,
     ) -> Result<Contact, InvalidValue> {
         let damped = damped && named.law.damping != Damping::None;
-        let a = if damped { self.damping } else { 0.0 };
+        // Bodies yield from a = 1 on.
+        let least = if named.law.damping == Damping::Yielding { 1.0 } else { 0.0 };
+        let a = if damped { least + self.damping } else { 0.0 };
         let b = if damped && named.tangential_damping { self.tangential_damping } else { 0.0 };
         Contact::new(kappa, psi, a)?.with_law(named.law, b)
     }

@@ -172,8 +172,6 @@ fn grid(arguments: &MapArguments) -> Result<(Grid, Engine), Failure> {
         (law, tangential_damping) = (pair.law, pair.tangential_damping());
         law::permits(arguments.law.law.as_deref(), "tangential damping", tangential_damping)?;
     }
-    let refused = |error: InvalidValue| Failure::Usage(error.to_string());
-    law.require_no_adhesion("maps are").map_err(refused)?;
     let columns = GridAxis { range: columns, cells: size.columns };
     let rows = GridAxis { range: rows, cells: size.rows };
     Ok((Grid { columns, rows, coordinates, law, tangential_damping }, engine))

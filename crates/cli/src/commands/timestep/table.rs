@@ -21,6 +21,9 @@ pub fn write(
 ) -> io::Result<()> {
     let phases = result.phases;
     write!(out, "Errors in time steps, scheme {}, {phases} start phases, ", result.scheme.name())?;
+    if result.overlap > 0.0 {
+        write!(out, "overlap {:?} of the distance of the centres, ", result.overlap)?;
+    }
     match &result.contacts[..] {
         [contact] => writeln!(
             out,

@@ -127,6 +127,8 @@ pub struct SurfaceFields {
     critical_damping_ratio: Option<Value>,
     unloading_stiffness_ratio: Option<Value>,
     hardening_per_m: Option<Value>,
+    yield_velocity_m_per_s: Option<Value>,
+    yield_pressure_pa: Option<Value>,
     surface_energy_j_per_m2: Option<Value>,
     e_n: Option<Value>,
     e_n_at_m_per_s: Option<Value>,
@@ -329,6 +331,8 @@ impl SurfaceFields {
                 &self.unloading_stiffness_ratio,
             )?,
             hardening_per_m: given(&quantity::HARDENING, &self.hardening_per_m)?,
+            yield_velocity_m_per_s: given(&quantity::YIELD_VELOCITY, &self.yield_velocity_m_per_s)?,
+            yield_pressure_pa: given(&quantity::YIELD_PRESSURE, &self.yield_pressure_pa)?,
             surface_energy_j_per_m2: given(
                 &quantity::SURFACE_ENERGY,
                 &self.surface_energy_j_per_m2,

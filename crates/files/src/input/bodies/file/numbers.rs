@@ -54,7 +54,7 @@ const WALL_MOTION: [Vector<WallMotionFields>; 3] = [
     ("normal", "without unit", |it| &mut it.normal),
     (VELOCITY.0, VELOCITY.1, |it| &mut it.velocity_m_per_s),
 ];
-const SURFACE: [Scalar<SurfaceFields>; 17] = [
+const SURFACE: [Scalar<SurfaceFields>; 19] = [
     (&quantity::FRICTION, |it| &mut it.friction),
     (&quantity::DYNAMIC_FRICTION, |it| &mut it.dynamic_friction),
     (&quantity::FRICTION_DECAY, |it| &mut it.friction_decay_s_per_m),
@@ -68,6 +68,8 @@ const SURFACE: [Scalar<SurfaceFields>; 17] = [
     (&quantity::CRITICAL_DAMPING_RATIO, |it| &mut it.critical_damping_ratio),
     (&quantity::UNLOADING_RATIO, |it| &mut it.unloading_stiffness_ratio),
     (&quantity::HARDENING, |it| &mut it.hardening_per_m),
+    (&quantity::YIELD_VELOCITY, |it| &mut it.yield_velocity_m_per_s),
+    (&quantity::YIELD_PRESSURE, |it| &mut it.yield_pressure_pa),
     (&quantity::SURFACE_ENERGY, |it| &mut it.surface_energy_j_per_m2),
     (&quantity::NORMAL_RESTITUTION, |it| &mut it.e_n),
     (&quantity::RESTITUTION_VELOCITY, |it| &mut it.e_n_at_m_per_s),
