@@ -52,12 +52,22 @@ def test_what_fails_is_said() -> None:
     assert stiff.largest_step(2.0, "energy") == 1 / 1000
 
 
+def test_a_normal_that_turns_is_in_the_errors() -> None:
+    arguments = {"law": "gran/hooke/history", "steps": [20000], "phases": 1}
+    still = stickslip.timestep(3, 2, **arguments)  # type: ignore[arg-type]
+    assert still.eps_t.worst[0] < 1e-3
+    for scheme in ("lammps", "synchronized_verlet"):
+        found = stickslip.timestep(3, 2, overlap=0.01, scheme=scheme, **arguments)  # type: ignore[arg-type]
+        assert found.eps_t.worst[0] == pytest.approx(0.136061, abs=1e-3)
+
+
 def test_bad_input_is_refused() -> None:
     for arguments, words in [
         ({"steps": [0.5]}, "steps = 0.5 is out of range"),
         ({"steps": []}, "0 time steps"),
         ({"phases": 0}, "phases = 0 is out of range"),
-        ({"scheme": "verlet"}, r'scheme = "verlet"; expected one of \["lammps", "elapsed"\]'),
+        ({"scheme": "verlet"}, r'scheme = "verlet"; expected one of \["lammps", "elapsed",'),
+        ({"overlap": 0.6}, "a number from 0 to 0.5"),
         ({"mu": 0}, "mu = 0.0 is out of range"),
         ({"alpha": 2}, "alpha = 2.0 is out of range"),
         ({"damping": -1}, "damping = -1.0"),

@@ -234,6 +234,9 @@ class Page {
     for (const id of ["boundaries", "points", "limits"] as const)
       byId<HTMLInputElement>(id).checked = state[id];
     put("law", state.law);
+    // Bodies yield from a = 1 on.
+    const yields = this.laws.find((it) => it.name === state.law)?.law.damping === "yielding";
+    byId<HTMLInputElement>("damping").max = yields ? "20" : "1";
     for (const id of SLIDERS) {
       put(id, state[id]);
       put(`${id}-number`, state[id]);

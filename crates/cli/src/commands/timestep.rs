@@ -74,7 +74,7 @@ pub struct TimestepArguments {
     /// input
     #[arg(long, value_name = "FILE.json", help_heading = "Impacts")]
     #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "e_n", "mu", "alpha"])]
-    #[arg(conflicts_with_all = ["tangential_damping", "dynamic_friction"])]
+    #[arg(conflicts_with_all = ["tangential_damping", "dynamic_friction", "overlap"])]
     pub bodies: Option<PathBuf>,
 
     /// The contact law.

@@ -129,6 +129,26 @@ fn errors_are_drawn() {
     assert_eq!((ran.code, ran.stdout.as_str()), (1, ""));
 }
 
+/// What a turning normal changes does not vanish with the step.
+#[test]
+fn a_normal_that_turns_is_in_the_errors() {
+    let line = "--kappa 3 --psi 2 --law gran/hooke/history --steps 20,20000 --phases 1";
+    let worst = |found: &Value| found["rows"][1]["eps_t"]["worst"]["error"].as_f64().unwrap();
+    let still = json(line);
+    assert!(still.get("overlap").is_none() && worst(&still) < 1e-3);
+    for scheme in ["lammps", "synchronized_verlet"] {
+        let turns = format!("{line} --overlap 0.01 --scheme {scheme}");
+        let found = json(&turns);
+        assert_eq!((&found["overlap"], &found["scheme"]), (&0.01.into(), &scheme.into()));
+        assert!((worst(&found) - 0.136_061).abs() < 1e-3, "{found}");
+        assert!(
+            stickslip(&format!("timestep {turns}"))
+                .stdout
+                .contains("overlap 0.01 of the distance of the centres")
+        );
+    }
+}
+
 #[test]
 fn bad_input_is_refused() {
     let workspace = Workspace::new();
@@ -144,6 +164,8 @@ fn bad_input_is_refused() {
         ("--kappa 1 --psi 1 --phases 4097", 2, &["--phases", "1..=4096"]),
         ("--kappa 1 --psi 1 --error 0", 2, &["--error = 0.0", "above 0"]),
         ("--kappa 1 --psi 1 --scheme verlet", 2, &["--scheme", "lammps, elapsed"]),
+        ("--kappa 1 --psi 1 --overlap 0.6", 2, &["overlap = 0.6", "from 0 to 0.5"]),
+        ("--bodies central.json --overlap 0.1", 2, &["--overlap", "cannot be used with"]),
         ("--kappa 1 --psi 1 --bodies central.json", 2, &["--bodies", "cannot be used with"]),
         ("--bodies central.json", 2, &["central.json: the impact is central"]),
         ("--bodies none.json", 2, &["none.json: cannot be read"]),
