@@ -24,8 +24,6 @@ pub(crate) struct Yielding {
     pub from: f64,
     pub slope: f64,
     pub offset: f64,
-    /// The greatest overlap.
-    pub greatest: f64,
 }
 
 impl Hysteresis {
@@ -55,16 +53,14 @@ impl Hysteresis {
         let from = 1.25_f64.powf(0.4) * damping.powf(-0.8);
         let ratio = overlap_ratio(damping);
         let root = from.sqrt();
-        let yielding =
-            Yielding { from, slope: 1.5 * root, offset: 0.5 * root * from, greatest: ratio * from };
         // The radius, over what it was.
         let radius = 2.0 * ratio * ratio.sqrt() / (3.0 * ratio - 1.0);
         Self {
             factor: radius.sqrt(),
             turned: 1.0 / radius.sqrt(),
-            left: yielding.greatest * (1.0 - 1.0 / radius),
+            left: ratio * from * (1.0 - 1.0 / radius),
             lost: 1.0 - restored(ratio),
-            yielding: Some(yielding),
+            yielding: Some(Yielding { from, slope: 1.5 * root, offset: 0.5 * root * from }),
         }
     }
 }

@@ -68,7 +68,7 @@ impl GeneralFamily {
         let mut max_steps = 1000 + (100.0 * oscillations) as usize;
         let (mut span, longest) = (0.0_f64, Options { max_steps: LONGEST, ..options });
         for contact in motions {
-            let (system, start) = started(GeneralContact::new(contact));
+            let (system, start) = started(&GeneralContact::new(contact));
             match run(Dop853, &system, start, f64::INFINITY, &longest, &mut ()) {
                 Ok(Run { outcome: Outcome::EndedByGuard { .. }, s, statistics, .. }) => {
                     span = span.max(BEYOND * s);
@@ -101,7 +101,7 @@ impl GeneralFamily {
     }
 
     fn labelled_at(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
-        let (system, start) = started(self.system(point));
+        let (system, start) = started(&self.system(point));
         let mut fired = Fired(vec![CollisionEvent::Begins(system.beginning())]);
         let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired).ok()?;
         if found.outcome != (Outcome::EndedByGuard { guard: END }) {
@@ -117,7 +117,7 @@ impl GeneralFamily {
     pub(super) fn prescribed(&self, point: &Point, exits: &[Exit]) -> Option<(Vec<Exit>, f64)> {
         let (begins, exits) = exits.split_first()?;
         let system = self.system(point).beginning_with(BEGINNINGS[begins.guard - BEGINS]);
-        let (system, start) = started(system);
+        let (system, start) = started(&system);
         // A run that cannot follow the itinerary has no such end.
         let found = follow(Dop853, &system, start, self.span, &self.options, exits).ok()?;
         let FollowedRun { mut exits, run } = found?;
@@ -128,7 +128,7 @@ impl GeneralFamily {
 
     /// The label of the run at a point, and its margins.
     pub(super) fn free_run(&self, point: &Point) -> FreeRun<CollisionLabel, Margin> {
-        let (system, start) = started(self.system(point));
+        let (system, start) = started(&self.system(point));
         // Where a last phase is as short as rounding, its guards cannot be looked at. The label is
         // known without them, and changes beside such a point need the margins of its neighbours.
         let Ok(found) = margins(Dop853, &system, start, self.span, &self.options) else {
@@ -163,7 +163,7 @@ impl GeneralFamily {
             let value = system.beginning_margins().into_iter().nth(derivative as usize)?;
             return Some((which.clone(), value?));
         };
-        let (system, start) = started(system.beginning_with(begun_with(begins)));
+        let (system, start) = started(&system.beginning_with(begun_with(begins)));
         let inner = Margin { exits: exits.to_vec(), ..which.clone() };
         // A run that cannot follow the itinerary has no such margin.
         let found = margin(Dop853, &system, start, self.span, &self.options, &inner).ok()??;
@@ -201,8 +201,8 @@ fn restitution(system: &GeneralContact, end: &State<STATE>) -> f64 {
     system.velocity(end) / system.contact().psi()
 }
 
-fn started(system: GeneralContact) -> System {
-    (system, Start { mode: system.first(), s: 0.0, state: system.start() })
+fn started(system: &GeneralContact) -> System {
+    (*system, Start { mode: system.first(), s: 0.0, state: system.start() })
 }
 
 /// The label of a free run from its margins. The sign of a margin says whether slip goes on where

@@ -12,7 +12,7 @@ use stickslip_files::map::{
 };
 use stickslip_files::output::file::{OutputFile, StoredFile};
 use stickslip_files::output::picture::PictureFile;
-use stickslip_model::{Engine, InvalidValue, Law};
+use stickslip_model::{Engine, Law};
 use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::sweep::{self, FailureCount};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
