@@ -314,6 +314,7 @@ def rust_reference(rustdoc: Path | None) -> str:
             ":glob:",
             "",
             "/crates/*/README",
+            "/crates/exact/PROOFS",
             "/crates/validation/JOURNAL",
             "/web/README",
             "/tests/data/README",

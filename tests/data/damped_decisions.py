@@ -1,8 +1,7 @@
 """Checks of the statements on which the exact solution with damping decides.
 
-The statements and their proofs are in docs/physics.md, "The exact solution with damping". Here
-every identity is checked by algebra over the rational numbers, and every sign of a polynomial by
-counting its roots. Only the section COMPUTED uses floating-point numbers: it is not a proof.
+The statements and their proofs are in crates/exact/PROOFS.md. Here every identity is checked by
+algebra over the rational numbers, and every sign of a polynomial by counting its roots. Only the section COMPUTED uses floating-point numbers: it is not a proof.
 
 Each statement is one line of output. A statement that does not hold ends the program.
 
@@ -73,7 +72,7 @@ bend = (
     - v**2 * general / (2 * u**2)
     + 2 * beta * u**3 * (beta * u * general - alpha * v)
 )
-holds("2u d2F/dt2 as in docs/physics.md", zero(along_time(rate_here, general) - bend / (2 * u)))
+holds("2u d2F/dt2 as in PROOFS.md", zero(along_time(rate_here, general) - bend / (2 * u)))
 at_end = along_time(force, q).subs(a, -(u**2) / v)
 holds("at the end of contact, q = 0, dF/dt = uv", zero(at_end - u * v))
 

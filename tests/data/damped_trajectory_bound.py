@@ -1,6 +1,6 @@
 """Bounds of all errors of the tabulated normal motion with damping.
 
-The argument is in docs/physics.md, "How exact the normal motion is". Balls (Arb) enclose the exact
+The argument is in crates/exact/PROOFS.md. Balls (Arb) enclose the exact
 motion (damped_enclosure.py). All other numbers here are sums of positive terms, which rounding
 changes by less than SLACK. So every line that is printed is proved, for the table that is read.
 The code writes this table:
@@ -253,7 +253,7 @@ def interval_errors(task):
     return interval, worst
 
 
-# What docs/physics.md quotes: the largest value for a < 1, and for 1 <= a < 2^14.
+# What PROOFS.md quotes: the largest value for a < 1, and for 1 <= a < 2^14.
 QUOTED = {
     "enclosure": ("half width of the enclosures of all rows", 1e-24, 1e-20),
     "table": ("polynomials of the table, relative to max(1, value)", 1.2e-16, 1.2e-16),

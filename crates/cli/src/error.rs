@@ -203,7 +203,7 @@ impl From<AtlasError> for Failure {
     /// The failure of an atlas whose window comes from options.
     fn from(error: AtlasError) -> Self {
         match error {
-            AtlasError::Parameter(_) | AtlasError::Narrow(_) | AtlasError::Unverifiable(_) => {
+            AtlasError::Parameter(_) | AtlasError::Unverifiable(_) => {
                 Self::Usage(error.to_string())
             }
             AtlasError::Tolerance { .. } => Self::Usage(format!("--tolerance: {error}")),

@@ -10,8 +10,8 @@ use stickslip_figure::markup::plain;
 use stickslip_figure::number;
 use stickslip_figure::pictures::studies::Picture;
 use stickslip_plane::Range;
-use stickslip_reproduction::figures::{Section, boundaries, figure2, headlines};
-use stickslip_reproduction::statements::{Audit, Verdict};
+use stickslip_reproduction::figures::{ReportSection, boundaries, figure2, headlines};
+use stickslip_reproduction::statements::{Audit, StatementVerdict};
 use stickslip_studies::{Cell, StudyColumn, StudyTable, contact_laws};
 
 use markup::markup;
@@ -43,7 +43,7 @@ struct Page<'a> {
     introduction: &'a [&'a str],
     /// The command that makes the page.
     command: &'a str,
-    sections: &'a [Section],
+    sections: &'a [ReportSection],
 }
 
 impl Page<'_> {
@@ -70,14 +70,14 @@ impl Page<'_> {
 }
 
 /// The page with everything.
-pub fn html(sections: &[Section]) -> String {
+pub fn html(sections: &[ReportSection]) -> String {
     let (title, introduction, command) = (TITLE, &INTRODUCTION[..], "reproduce");
     // Writing to memory fails only where a value cannot be displayed, and all can.
     Page { title, introduction, command, sections }.render().unwrap_or_default()
 }
 
 /// The page of the contact laws.
-pub fn laws(mut section: Section) -> String {
+pub fn laws(mut section: ReportSection) -> String {
     section.shown.push(contact_laws::LAWS);
     let introduction = &[
         "What the contact laws of particle codes do with two spheres, beside the law of Schwager, \
@@ -117,7 +117,7 @@ fn explored(section: &str) -> Option<String> {
 
 /// The tables of a section that stand on the page; an audit is shown statement by statement
 /// instead.
-fn shown(section: &Section) -> Vec<&StudyTable> {
+fn shown(section: &ReportSection) -> Vec<&StudyTable> {
     let tables = section.study.tables.iter().filter(|_| section.audit.is_none());
     tables.filter(|table| section.shown.contains(&table.name)).collect()
 }
@@ -134,12 +134,12 @@ fn labelled<'a>(row: &'a [Cell], table: &'a StudyTable) -> Vec<(&'a Cell, &'a St
 }
 
 /// The class of a verdict and a mark that tells it apart without its colour.
-fn verdict(verdict: Verdict) -> (&'static str, char) {
+fn verdict(verdict: StatementVerdict) -> (&'static str, char) {
     match verdict {
-        Verdict::Holds => ("holds", '✓'),
-        Verdict::HoldsWithACondition => ("condition", '◐'),
-        Verdict::DoesNotHold => ("fails", '✗'),
-        Verdict::CannotBeDecided => ("open", '?'),
+        StatementVerdict::Holds => ("holds", '✓'),
+        StatementVerdict::HoldsWithACondition => ("condition", '◐'),
+        StatementVerdict::DoesNotHold => ("fails", '✗'),
+        StatementVerdict::CannotBeDecided => ("open", '?'),
     }
 }
 

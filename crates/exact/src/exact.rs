@@ -17,7 +17,7 @@
 //! motion at any time, `cusp` what vanishes where grazes end in one point.
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). The statements
-//! on which the decisions rest are proved in docs/physics.md.
+//! on which the decisions rest are proved in PROOFS.md of this crate.
 
 use stickslip_contact::{Collision, Contact, EnergyLedger, Regime, Side, Switch};
 

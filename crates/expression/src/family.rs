@@ -1,7 +1,6 @@
 //! A system and two of its parameters, as a family of runs whose boundaries can be traced.
 
 mod align;
-mod start;
 mod values;
 
 use std::borrow::Cow;
@@ -17,7 +16,7 @@ pub use align::RuleOrder;
 
 use crate::compiled::Compiled;
 use crate::run::Runnable;
-use crate::system::System;
+use crate::system::{Mode, Next, Rule, System, Trigger};
 
 /// A system whose runs depend on two of its parameters.
 ///
@@ -123,7 +122,7 @@ impl SystemFamily {
         let (system, order) = match by_axes {
             None => (Cow::Borrowed(system), order),
             Some(refusal) => {
-                let (system, order) = start::chosen(system, order).ok_or(refusal)?;
+                let (system, order) = chosen(system, order).ok_or(refusal)?;
                 (Cow::Owned(system), order)
             }
         };
@@ -226,4 +225,34 @@ impl Family for SystemFamily {
     fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
         self.runs.free_run(point)
     }
+}
+
+/// The system with a mode in front of the first ones, whose rule `start` leads to one of them by
+/// the condition: so the condition has a margin, as that of every transition. `None` if there are
+/// several conditions, rules at given times, which would not count at the start, or sides of
+/// several surfaces to be decided there.
+fn chosen(system: &System, mut order: RuleOrder) -> Option<(System, RuleOrder)> {
+    let &[(condition, other)] = &system.otherwise[..] else { return None };
+    let is_clock = |rule: &Rule| !matches!(rule.trigger, Trigger::When(..));
+    let is_decided = |mode: usize| system.slides.iter().any(|slide| slide.first == mode);
+    let has_clocks = system.modes.iter().flat_map(|mode| &mode.rules).any(is_clock);
+    if has_clocks || is_decided(system.first) || is_decided(other) {
+        return None;
+    }
+    let mut chosen = system.clone();
+    let graph = &mut chosen.graph;
+    let (zero, start) = (graph.constant(0.0), system.start);
+    let start = start.unwrap_or(zero);
+    let mut rule = Rule::new(Trigger::At(vec![start]));
+    rule.next = Next::Branch(condition, system.first, other);
+    let slopes = vec![zero; system.components.len()];
+    chosen.modes.push(Mode { name: "start".to_owned(), slopes, rules: vec![rule] });
+    (chosen.first, chosen.otherwise) = (system.modes.len(), Vec::new());
+    let mut name = "start".to_owned();
+    while order.names.contains(&name) {
+        name.push('_');
+    }
+    order.places.push(vec![order.names.len()]);
+    order.names.push(name);
+    Some((chosen, order))
 }

@@ -28,7 +28,7 @@ mod tracing;
 mod verification;
 
 pub(crate) use crate::family::general::itinerary;
-pub use crate::sheet::{ToleranceRange, TooNarrow};
+pub use crate::sheet::ToleranceRange;
 pub use angles::ObliqueBoundaries;
 pub use boundary::BoundaryKind;
 #[cfg(feature = "serde")]

@@ -25,6 +25,9 @@ use crate::sheet::Sheet;
 /// Collisions over a window of two parameters: κ and ψ at one scaled damping, or the velocities of
 /// two bodies.
 ///
+/// For two bodies κ and the damping vary together with the normal velocity, which no plane over κ
+/// and ψ at one damping serves. Everything above works on any plane.
+///
 /// They are traced in the coordinates of a [`Chart`]; [`Self::point`] and [`Self::parameters`]
 /// convert.
 ///

@@ -1,5 +1,6 @@
 //! A window in its traced coordinates, and the accuracy that boundaries can have in it.
 
+use stickslip_model::InvalidValue;
 use stickslip_tracer::{Node, Point, Window};
 
 use crate::chart::{Chart, Range};
@@ -26,22 +27,6 @@ pub struct ToleranceRange {
     /// The coarsest: the tracer distinguishes curves that are 1e-8 of an ordinary window's shorter
     /// side apart.
     pub coarsest: f64,
-}
-
-/// A window is too narrow for the accuracy of its boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the window is too narrow: {width:e} in ln({}) by {height:e} in ln({}); expected from \
-     {NARROWEST:e} each",
-    names[0], names[1]
-)]
-pub struct TooNarrow {
-    /// The names of both parameters.
-    pub names: [&'static str; 2],
-    /// The width of the window in the logarithm of the first parameter.
-    pub width: f64,
-    /// The height of the window in the logarithm of the second parameter.
-    pub height: f64,
 }
 
 /// The smallest distance between a boundary and its curve, in traced coordinates.
@@ -118,13 +103,14 @@ impl Sheet {
     /// `names` of both parameters.
     ///
     /// # Errors
-    /// [`TooNarrow`] has the size of the window.
-    pub fn require_wide(&self, names: [&'static str; 2]) -> Result<(), TooNarrow> {
+    /// [`InvalidValue`] has the size of the window.
+    pub fn require_wide(&self, [x, y]: [&'static str; 2]) -> Result<(), InvalidValue> {
         let [width, height] = self.extents();
         if width >= NARROWEST && height >= NARROWEST {
             return Ok(());
         }
-        Err(TooNarrow { names, width, height })
+        let size = format!("is too narrow: {width:e} in ln({x}) by {height:e} in ln({y})");
+        Err(InvalidValue::phrase("the window", size, format!("from {NARROWEST:e} each")))
     }
 
     /// Both parameters of a traced point, moved onto an edge of the window if they differ from the

@@ -93,7 +93,6 @@ pub fn keeping<'py>(
 pub fn of_atlas(error: &AtlasError) -> PyErr {
     match error {
         AtlasError::Parameter(_)
-        | AtlasError::Narrow(_)
         | AtlasError::Unverifiable(_)
         | AtlasError::Tolerance { .. }
         | AtlasError::Dampings { .. } => bad_input(error),

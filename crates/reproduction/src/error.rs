@@ -7,7 +7,6 @@ use stickslip_model::{CollisionError, CollisionFailure, InvalidValue};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_solver::Outcome;
 use stickslip_studies::StudyError;
-use stickslip_studies::search::SearchError;
 
 /// Why a part of the reproduction has no result.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +26,7 @@ pub enum ReproductionError {
     /// Maps have no cells.
     #[error("maps of 0 cells; expected at least one")]
     NoCells,
-    /// No collision has these parameters.
+    /// No collision has these parameters, or a search for an extremum or a zero failed.
     #[error(transparent)]
     Parameter(#[from] InvalidValue),
     /// A collision cannot be computed.
@@ -73,9 +72,6 @@ pub enum ReproductionError {
         /// The reduced impact ratio ψ.
         psi: f64,
     },
-    /// A search for an extremum or a zero has no result.
-    #[error(transparent)]
-    Search(#[from] SearchError),
     /// A computation failed that several statements need.
     #[error(transparent)]
     Shared(Arc<ReproductionError>),

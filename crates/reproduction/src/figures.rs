@@ -1,6 +1,6 @@
 //! The figures of the paper computed anew, and all parts of the reproduction.
 //!
-//! Start reading in [`Part`]; then, in this order: [`Section`] (the result of a part),
+//! Start reading in [`Part`]; then, in this order: [`ReportSection`] (the result of a part),
 //! [`Reproduction`] (what parts share), `figure1` to `figure6` and `boundaries` (the parts),
 //! `points` (where the points a to o of Figure 4 are), `stiffness_map`, [`Sweep`] and
 //! `course` (what several figures need).
@@ -20,7 +20,7 @@ mod stiffness_map;
 mod sweep;
 
 pub use reproduction::Reproduction;
-pub use section::{Content, DataFile, Section, headlines};
+pub use section::{Content, DataFile, ReportSection, headlines};
 pub use sweep::Sweep;
 
 use stickslip_figure::pictures::studies as pictures;
@@ -35,7 +35,7 @@ use crate::statements;
 pub struct Part {
     /// The title of the part.
     pub title: &'static str,
-    run: fn(&Reproduction) -> Result<Section, ReproductionError>,
+    run: fn(&Reproduction) -> Result<ReportSection, ReproductionError>,
 }
 
 const PARTS: [Part; 10] = [
@@ -64,7 +64,7 @@ impl Part {
     /// # Errors
     /// [`ReproductionError`]: maps have no cells, a collision cannot be computed, boundaries cannot
     /// be traced, or a picture cannot be drawn.
-    pub fn run(&self, reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+    pub fn run(&self, reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
         if reproduction.cells == 0 {
             return Err(ReproductionError::NoCells);
         }
@@ -73,25 +73,25 @@ impl Part {
 }
 
 /// The study of convergence, without the times, which differ from run to run.
-fn convergence(_: &Reproduction) -> Result<Section, ReproductionError> {
+fn convergence(_: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let measured = convergence::run(&convergence::ConvergenceSettings::usual(0.0)?, SILENT)?;
     let mut study = measured.study();
     study.tables.retain(|table| table.name != convergence::TIMES);
-    let section = Section::new(study, pictures::convergence::draw(&measured));
-    Ok(Section { shown: vec![convergence::ORDERS], ..section })
+    let section = ReportSection::new(study, pictures::convergence::draw(&measured));
+    Ok(ReportSection { shown: vec![convergence::ORDERS], ..section })
 }
 
 /// The study of stiff springs.
-fn stiff_springs(_: &Reproduction) -> Result<Section, ReproductionError> {
+fn stiff_springs(_: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let measured = stiff_springs::run(&stiff_springs::StiffSpringSettings::default(), SILENT)?;
-    Ok(Section::new(measured.study(), pictures::stiff_springs::draw(&measured)))
+    Ok(ReportSection::new(measured.study(), pictures::stiff_springs::draw(&measured)))
 }
 
 /// The statements of the paper, each with its verdict.
-fn statements(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+fn statements(reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let numbers: Vec<u8> = (1..=statements::COUNT).collect();
     let audit = statements::run(reproduction.spring, &numbers, SILENT)?;
     let study = audit.study();
     let shown = study.tables.iter().map(|table| table.name).collect();
-    Ok(Section { shown, audit: Some(audit), ..Section::new(study, Vec::new()) })
+    Ok(ReportSection { shown, audit: Some(audit), ..ReportSection::new(study, Vec::new()) })
 }

@@ -9,11 +9,11 @@
 //! [`statements`] (the statements, each with a verdict).
 //!
 //! ```
-//! use stickslip_reproduction::statements::{self, Spring, Verdict};
+//! use stickslip_reproduction::statements::{self, Spring, StatementVerdict};
 //!
 //! // Statement 4: a collision ends with sliding.
 //! let audit = statements::run(Spring::Reset, &[4], stickslip_plane::progress::SILENT)?;
-//! assert_eq!(audit.statements[0].finding.verdict, Verdict::Holds);
+//! assert_eq!(audit.statements[0].finding.verdict, StatementVerdict::Holds);
 //! # Ok::<(), stickslip_reproduction::ReproductionError>(())
 //! ```
 

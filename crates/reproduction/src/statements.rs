@@ -31,7 +31,7 @@ mod subject;
 
 pub use report::{SCHEMA, TITLE};
 pub use spring::Spring;
-pub use statement::{Evidence, Statement, StatementFinding, Verdict};
+pub use statement::{Evidence, Statement, StatementFinding, StatementVerdict};
 
 /// The statements with what was found.
 #[derive(Debug)]
@@ -163,12 +163,12 @@ mod tests {
         let doubt = || Err(Stop::Open("two boundaries are one".to_owned()));
         let statements = test(&with_lines(doubt), &[6, 7, 8, 21], SILENT).unwrap();
         for Statement { number, finding, .. } in &statements {
-            assert_eq!(finding.verdict, Verdict::CannotBeDecided, "{number}");
+            assert_eq!(finding.verdict, StatementVerdict::CannotBeDecided, "{number}");
             assert_eq!(finding.explanation, "two boundaries are one");
         }
         // Statement 10 has the boundaries only as further evidence.
         let statements = test(&with_lines(doubt), &[10], SILENT).unwrap();
-        assert_eq!(statements[0].finding.verdict, Verdict::DoesNotHold);
+        assert_eq!(statements[0].finding.verdict, StatementVerdict::DoesNotHold);
     }
 
     #[test]

@@ -1,4 +1,7 @@
 //! A hybrid system as the engine sees it, whatever its states and lists of guards are stored in.
+//!
+//! The loop and the events are generic over a `System`; states are arrays of a fixed size, or
+//! buffers where the dimension is known at run time only.
 
 use std::cell::RefCell;
 use std::fmt::Debug;

@@ -3,13 +3,11 @@
 use stickslip_model::exact::ExactError;
 use stickslip_model::{CollisionFailure, InvalidValue, OtherLaw};
 
-use crate::search::SearchError;
-
 /// Why a study has no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// Settings are out of range.
+    /// Settings are out of range, or a search for a maximum or a zero failed.
     #[error(transparent)]
     Settings(#[from] InvalidValue),
     /// A collision has another law than the paper's.
@@ -24,7 +22,4 @@ pub enum StudyError {
     /// The exact engine refuses a collision with a stiff spring.
     #[error("the limit of stiff springs cannot be studied: {0}")]
     Exact(#[from] ExactError),
-    /// The search for a maximum failed.
-    #[error("the limit of stiff springs cannot be studied: {0}")]
-    Search(#[from] SearchError),
 }

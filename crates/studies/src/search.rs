@@ -1,7 +1,6 @@
 //! Searches for maxima, zeros and changes, with the solvers of argmin.
 
 use std::cell::RefCell;
-use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Neg;
 
@@ -10,58 +9,32 @@ use argmin::solver::brent::{BrentOpt, BrentRoot};
 use argmin::solver::goldensectionsearch::GoldenSectionSearch;
 use argmin::solver::neldermead::NelderMead;
 use rayon::prelude::*;
-
-/// Why a search has no result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SearchError {
-    /// There is no place to start from.
-    #[error("a search has no places to start from")]
-    NoPlaces,
-    /// A solver does not accept what it was given.
-    #[error("{method} failed from {} to {}; expected {}", .ends[0], .ends[1], .method.expected())]
-    Solver {
-        /// The solver.
-        method: SearchMethod,
-        /// The ends of the interval; of the simplex method, two corners of the triangle in the
-        /// first coordinate.
-        ends: [f64; 2],
-    },
-}
+use stickslip_model::InvalidValue;
 
 /// A solver.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SearchMethod {
-    /// Golden section, for a maximum in an interval.
-    GoldenSection,
-    /// The simplex method of Nelder and Mead, for a maximum of two variables.
-    Simplex,
-    /// Brent's method for a maximum in an interval.
-    BrentMaximum,
-    /// Brent's method for a zero in an interval.
-    BrentZero,
+#[derive(Clone, Copy)]
+struct Searcher {
+    name: &'static str,
+    /// What it expects.
+    expected: &'static str,
 }
 
-impl SearchMethod {
-    /// What the solver expects, in words.
-    fn expected(self) -> &'static str {
-        match self {
-            Self::GoldenSection | Self::BrentMaximum => "an interval of finite length above 0",
-            Self::Simplex => "a triangle of finite size",
-            Self::BrentZero => "values of two signs at the ends",
-        }
-    }
-}
+const GOLDEN_SECTION: Searcher = Searcher {
+    name: "the search by golden section",
+    expected: "an interval of finite length above 0",
+};
+const SIMPLEX: Searcher =
+    Searcher { name: "the simplex method", expected: "a triangle of finite size" };
+const BRENT_MAXIMUM: Searcher = Searcher {
+    name: "Brent's method for a maximum",
+    expected: "an interval of finite length above 0",
+};
+const BRENT_ZERO: Searcher =
+    Searcher { name: "Brent's method for a zero", expected: "values of two signs at the ends" };
 
-impl fmt::Display for SearchMethod {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::GoldenSection => "the search by golden section",
-            Self::Simplex => "the simplex method",
-            Self::BrentMaximum => "Brent's method for a maximum",
-            Self::BrentZero => "Brent's method for a zero",
-        })
-    }
+/// The error of a search without a place to start from.
+fn no_places() -> InvalidValue {
+    InvalidValue::phrase("a search", "has no places to start from", "at least one")
 }
 
 /// A place and the value there.
@@ -77,16 +50,15 @@ pub struct Optimum<T> {
 /// between its neighbours, to 1e-9 of their distance.
 ///
 /// # Errors
-/// [`SearchError::NoPlaces`] without places, a failure of the solver, or the first failure of
-/// `value`.
-pub fn maximum<E: From<SearchError> + Send>(
+/// [`InvalidValue`] without places or if the solver fails, or the first failure of `value`.
+pub fn maximum<E: From<InvalidValue> + Send>(
     places: &[f64],
     value: impl Fn(f64) -> Result<f64, E> + Send + Sync,
 ) -> Result<Optimum<f64>, E> {
     let values: Vec<_> = places.par_iter().map(|&at| value(at)).collect();
     let values: Vec<f64> = values.into_iter().collect::<Result<_, _>>()?;
     let Some(best) = (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])) else {
-        return Err(SearchError::NoPlaces.into());
+        return Err(no_places().into());
     };
     let (low, high) = (places[best.saturating_sub(1)], places[(best + 1).min(places.len() - 1)]);
     if low >= high {
@@ -95,7 +67,7 @@ pub fn maximum<E: From<SearchError> + Send>(
     let solver = GoldenSectionSearch::new(low, high)
         .and_then(|solver| solver.with_tolerance(1e-9 * (high - low)));
     let start = 0.5 * (low + high);
-    let solver = (SearchMethod::GoldenSection, [low, high], solver);
+    let solver = (GOLDEN_SECTION, [low, high], solver);
     let found =
         least(|at| value(*at).map(f64::neg), solver, |state| state.param(start).max_iters(200))?;
     Ok(if -found.value > values[best] {
@@ -109,8 +81,8 @@ pub fn maximum<E: From<SearchError> + Send>(
 /// size `step`.
 ///
 /// # Errors
-/// A failure of the solver, or the first failure of `value`.
-pub fn maximum_near<E: From<SearchError>>(
+/// [`InvalidValue`] if the solver fails, or the first failure of `value`.
+pub fn maximum_near<E: From<InvalidValue>>(
     start: [f64; 2],
     step: [f64; 2],
     value: impl Fn([f64; 2]) -> Result<f64, E>,
@@ -119,7 +91,7 @@ pub fn maximum_near<E: From<SearchError>>(
     let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
     let depth = |at: &Vec<f64>| value([at[0], at[1]]).map(f64::neg);
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-14);
-    let solver = (SearchMethod::Simplex, [x, x + step[0]], solver);
+    let solver = (SIMPLEX, [x, x + step[0]], solver);
     let found = least(depth, solver, |state| state.max_iters(400))?;
     Ok(Optimum { at: [found.at[0], found.at[1]], value: -found.value })
 }
@@ -128,15 +100,15 @@ pub fn maximum_near<E: From<SearchError>>(
 /// parts of the interval.
 ///
 /// # Errors
-/// A failure of the solver, or the first failure of `height`.
-pub fn highest<E: From<SearchError>>(
+/// [`InvalidValue`] if the solver fails, or the first failure of `height`.
+pub fn highest<E: From<InvalidValue>>(
     interval: (f64, f64),
     tolerance: f64,
     height: impl Fn(f64) -> Result<f64, E>,
 ) -> Result<f64, E> {
     let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
     let depth = |part: &f64| height(inside(interval, *part)).map(f64::neg);
-    let solver = (SearchMethod::BrentMaximum, interval.into(), Ok(solver));
+    let solver = (BRENT_MAXIMUM, interval.into(), Ok(solver));
     Ok(inside(interval, least(depth, solver, |state| state.max_iters(200))?.at))
 }
 
@@ -144,14 +116,14 @@ pub fn highest<E: From<SearchError>>(
 /// interval.
 ///
 /// # Errors
-/// A failure of the solver, or the first failure of `height`.
-pub fn root<E: From<SearchError>>(
+/// [`InvalidValue`] if the solver fails, or the first failure of `height`.
+pub fn root<E: From<InvalidValue>>(
     interval: (f64, f64),
     height: impl Fn(f64) -> Result<f64, E>,
 ) -> Result<f64, E> {
     let solver = BrentRoot::new(0.0, 1.0, 1e-14);
     let height = |part: &f64| height(inside(interval, *part));
-    let solver = (SearchMethod::BrentZero, interval.into(), Ok(solver));
+    let solver = (BRENT_ZERO, interval.into(), Ok(solver));
     Ok(inside(interval, least(height, solver, |state| state.max_iters(200))?.at))
 }
 
@@ -186,13 +158,13 @@ type SolverState<P> = IterState<P, (), (), (), (), f64>;
 /// the ends of what it searches.
 fn least<P, F, E, S>(
     cost: F,
-    (method, ends, solver): (SearchMethod, [f64; 2], Result<S, Error>),
+    (searcher, ends, solver): (Searcher, [f64; 2], Result<S, Error>),
     start: impl FnOnce(SolverState<P>) -> SolverState<P>,
 ) -> Result<Optimum<P>, E>
 where
     P: Clone,
     F: Fn(&P) -> Result<f64, E>,
-    E: From<SearchError>,
+    E: From<InvalidValue>,
     S: for<'a> Solver<&'a Cost<P, F, E>, SolverState<P>>,
 {
     let cost = Cost { value: cost, failed: RefCell::default(), place: PhantomData };
@@ -201,10 +173,14 @@ where
     if let Some(failure) = cost.failed.take() {
         return Err(failure);
     }
-    let solved = solved.map_err(|_| SearchError::Solver { method, ends })?;
+    let solved = solved.map_err(|_| {
+        let Searcher { name, expected } = searcher;
+        let [low, high] = ends;
+        InvalidValue::phrase(name, format!("failed from {low} to {high}"), expected)
+    })?;
     let state = solved.state();
     let best = state.get_best_param().map(|at| (at.clone(), state.get_best_cost()));
-    let (at, value) = best.ok_or(SearchError::NoPlaces)?;
+    let (at, value) = best.ok_or_else(no_places)?;
     Ok(Optimum { at, value })
 }
 

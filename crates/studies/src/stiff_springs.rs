@@ -3,6 +3,38 @@
 //! Start reading here; then, in this order: [`limit`] (maxima of full collisions), `maxima` (what
 //! is measured of them), `profile` (the inner problem beside them), `fit` (exponent and constant),
 //! `findings` and `tables`.
+//!
+//! # What is measured
+//!
+//! Collisions have no damping, ψ is between 0 and 2, and names are those of docs/physics.md.
+//!
+//! **One number for each κ.** A stick phase starts where s y = L and s w = dL/dt. The time of this
+//! *onset* decides all that follows. In the decompression a collision is therefore a map from one
+//! onset to the next, half a swing later and on the other side, and |w_final| is a function of the
+//! last onset alone. As ψ moves, the last onset runs through the same interval again and again.
+//! The largest |w_final|, E(κ), is therefore the same for all ψ
+//! (`stickslip::studies::stiff_springs::limit`).
+//!
+//! **The next order.** x = τ(1 − (4/35)τ^{5/2} + …), and τ^{5/2} = κ^{−5/4} σ^{5/2}. The limit
+//! becomes σ^{3/2} − (6/35)κ^{−5/4} σ⁴. As G is stationary in σ₀ and in σ₁, only the change of the
+//! limit counts:
+//!
+//! ```text
+//! κ^{5/4} E(κ) = F + F₁ κ^{−5/4} + O(κ^{−5/2})     F₁ = −(6/35)σ₀⁴ + (6/175)σ₁⁵ = −26.8733479956…
+//! ```
+//!
+//! **The phase** φ(σ) = σ/π + 2√(3/π) σ^{−1/2} + … falls by 1 from each onset to the next, and F
+//! is a function of it with period 1. √κ/π times the time left at the first switch is the phase up
+//! to O(κ^{−1/4}).
+//!
+//! **The count.** Half a swing has two switches if the spring reaches its limit: for ψ ≥ 1 from
+//! the first switch on, which is at the time t₁, and for ψ < 1 from its mirror image on. The count
+//! is therefore 2√κ min(t₁, t_c − t₁)/π, except for a few switches: √κ t_c/π at ψ = 1 and less
+//! elsewhere.
+//!
+//! **The range (30)**, in which ε_t is said to be close to 0, is read as ψ from m/√κ, where the
+//! bound (27) is 1/m, to 2, where sliding lasts. The largest |ε_t| lies at the lower end and is F
+//! κ^{−3/4}/m. From a fixed ψ on it is F κ^{−5/4}/ψ. Below ψ ≈ 20 κ^{−5/4} ε_t is of order 1.
 
 use rayon::prelude::*;
 use serde_json::json;

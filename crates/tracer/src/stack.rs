@@ -22,7 +22,6 @@ pub(crate) mod conditions;
 #[cfg(feature = "serde")]
 pub(crate) mod document;
 pub(crate) mod meeting;
-mod sample;
 mod search;
 mod structure;
 

@@ -15,7 +15,7 @@ use stickslip_model::Damping;
 use stickslip_model::presets::{self, Preset};
 use stickslip_model::restitution::{self, Keyword, Restitution};
 use stickslip_reproduction::ReproductionError;
-use stickslip_reproduction::figures::Section;
+use stickslip_reproduction::figures::ReportSection;
 use stickslip_studies::contact_laws::{self, ContactLawSettings};
 
 use crate::error::Failure;
@@ -166,7 +166,7 @@ pub fn write_page(settings: &ContactLawSettings, directory: &Path) -> Result<Pat
     drop(bar);
     let computed = computed?;
     let pictures = pictures::contact_laws::draw(&computed).map_err(ReproductionError::from)?;
-    let section = Section::new(computed.study(), pictures);
+    let section = ReportSection::new(computed.study(), pictures);
     write_study(&section.study, &section.pictures, directory)?;
     let path = directory.join("laws.html");
     write(&path, page::laws(section).as_bytes())?;

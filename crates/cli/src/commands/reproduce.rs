@@ -12,7 +12,7 @@ use stickslip_files::output::json;
 use stickslip_files::output::study::write_study;
 use stickslip_model::Engine;
 use stickslip_plane::atlas::AtlasDocument;
-use stickslip_reproduction::figures::{Content, DataFile, Reproduction, Section};
+use stickslip_reproduction::figures::{Content, DataFile, ReportSection, Reproduction};
 use stickslip_reproduction::statements::{COUNT, Spring};
 use stickslip_studies::contact_laws;
 
@@ -118,7 +118,7 @@ fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Fa
 }
 
 /// Writes all files of a part into `directory`, each of them at once or not at all.
-fn write_section(section: &Section, directory: &Path) -> Result<(), Failure> {
+fn write_section(section: &ReportSection, directory: &Path) -> Result<(), Failure> {
     for DataFile { name, content, .. } in &section.files {
         let path = directory.join(name);
         let bytes = match content {

@@ -4,14 +4,14 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 use stickslip_figure::number;
-use stickslip_reproduction::figures::Section;
+use stickslip_reproduction::figures::ReportSection;
 use stickslip_studies::{Cell, StudyTable};
 
 use super::{INTRODUCTION, TITLE};
 use crate::schema;
 
 /// Everything for programs, schema "stickslip.report/1".
-pub fn json(sections: &[Section]) -> String {
+pub fn json(sections: &[ReportSection]) -> String {
     let parts: Vec<Value> = sections.iter().map(part).collect();
     let report = json!({
         "schema": schema::REPORT,
@@ -22,7 +22,7 @@ pub fn json(sections: &[Section]) -> String {
     format!("{report:#}\n")
 }
 
-fn part(section: &Section) -> Value {
+fn part(section: &ReportSection) -> Value {
     let study = &section.study;
     let objections: Vec<String> = section.objections.iter().map(ToString::to_string).collect();
     let pictures = section.pictures.iter().map(
@@ -42,7 +42,7 @@ fn part(section: &Section) -> Value {
 }
 
 /// Everything for readers of text.
-pub fn markdown(sections: &[Section]) -> String {
+pub fn markdown(sections: &[ReportSection]) -> String {
     let mut text = format!("# {TITLE}\n");
     for paragraph in INTRODUCTION {
         append(&mut text, format_args!("\n{paragraph}\n"));

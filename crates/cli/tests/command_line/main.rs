@@ -28,7 +28,7 @@ mod map_failures;
 #[cfg(unix)]
 mod map_interrupted;
 mod notebooks_data;
-mod option_tables;
+mod option_lists;
 mod orbits;
 mod particle_codes;
 mod parts;

@@ -1,9 +1,12 @@
 //! Margins of the last half swing, where its top is close to the end of contact or beyond it.
 //!
 //! With damping, L falls to 0 at an even rate at the end of contact. A ratio |y|/L whose maximum is
-//! there is not a smooth function of κ and ψ. The gap is, and has one minimum, which may lie beyond
-//! the end. With little damping L falls faster than the spring over many half swings. These have no
-//! minimum of the gap; only the last half swing, on which the gap rises again, has this margin.
+//! there is not a smooth function of κ and ψ. The gap D = L − |y| is, and has one minimum, which
+//! may lie beyond the end, to where the motion is continued. With the amplitude A of the spring,
+//! the margin is (1 + D/A)² − 1 there; it is the same number as of the ratio if the top is at the
+//! peak of |y|. With little damping L falls faster than the spring over many half swings. These
+//! have no minimum of the gap; only the last half swing, on which the gap rises again, has this
+//! margin.
 
 use std::f64::consts::PI;
 

@@ -4,18 +4,14 @@ use stickslip_model::{CollisionError, InvalidValue, OutOfDomain};
 use stickslip_tracer::TraceError;
 
 use crate::family::CollisionPlane;
-use crate::sheet::TooNarrow;
 
 /// The reason why a window has no atlas or no stack.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtlasError {
-    /// No collision has the parameters of the window.
+    /// No collision has the parameters of the window, or the window is too narrow.
     #[error(transparent)]
     Parameter(#[from] InvalidValue),
-    /// The window is too narrow.
-    #[error(transparent)]
-    Narrow(#[from] TooNarrow),
     /// The window is out of the range of the integrator, which verifies an atlas.
     #[error("an atlas is verified by integration: {0}")]
     Unverifiable(#[from] OutOfDomain),

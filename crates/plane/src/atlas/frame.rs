@@ -4,7 +4,7 @@ use stickslip_model::{InvalidValue, Law, Reduction};
 
 use crate::chart::{Chart, Range};
 use crate::family::CollisionPlane;
-use crate::sheet::{Sheet, ToleranceRange, TooNarrow};
+use crate::sheet::{Sheet, ToleranceRange};
 
 /// The window of an atlas, and what all its collisions have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,8 +61,8 @@ impl Frame {
     /// Refuses a window that is too narrow for the accuracy of its boundaries.
     ///
     /// # Errors
-    /// [`TooNarrow`] has the size of the window.
-    pub fn require_wide(&self) -> Result<(), TooNarrow> {
+    /// [`InvalidValue`] has the size of the window.
+    pub fn require_wide(&self) -> Result<(), InvalidValue> {
         self.sheet().require_wide(CollisionPlane::SCALED)
     }
 

@@ -92,7 +92,7 @@ fn what_cannot_be_traced_is_refused() {
     }
     let narrow = Range { low: 1.0, high: 1.0 + 1e-9 };
     let refused = gaining::trace(Frame { kappa: narrow, ..good }, usual, SILENT);
-    assert!(matches!(refused, Err(AtlasError::Narrow(_))));
+    assert!(matches!(refused, Err(AtlasError::Parameter(_))));
     let endless =
         Frame { damping: 5.0, law: presets::find("gran/hooke/history").unwrap().law, ..good };
     assert!(matches!(gaining::trace(endless, usual, SILENT), Err(AtlasError::Parameter(_))));

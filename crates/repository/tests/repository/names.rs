@@ -8,7 +8,7 @@ use crate::root;
 use crate::rust::is_word;
 
 /// What the facade has.
-const CRATES: [&str; 12] = [
+const CRATES: [&str; 13] = [
     "contact",
     "exact",
     "expression",
@@ -18,6 +18,7 @@ const CRATES: [&str; 12] = [
     "orbits",
     "plane",
     "practice",
+    "reproduction",
     "solver",
     "studies",
     "tracer",

@@ -12,7 +12,7 @@ use stickslip_plane::progress::SILENT;
 use stickslip_studies::Study;
 
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use crate::error::ReproductionError;
 
 /// The title of the part.
@@ -27,7 +27,7 @@ pub const PSI: Range = Range { low: 0.01, high: 3.0 };
 ///
 /// # Errors
 /// The boundaries cannot be traced.
-pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(_: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let frame = Frame::new(KAPPA, PSI, 0.0);
     let tolerance = frame.tolerances().usual;
     let verified = Arc::new(trace(frame, tolerance, SILENT)?);
@@ -77,7 +77,7 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
         tables: Vec::new(),
     };
     let title = "the atlas, for stickslip locate";
-    Ok(Section::new(study, pictures).with_atlas("atlas.json", title, &verified))
+    Ok(ReportSection::new(study, pictures).with_atlas("atlas.json", title, &verified))
 }
 
 fn headline(verified: &CollisionAtlas) -> String {

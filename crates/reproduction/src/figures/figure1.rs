@@ -11,7 +11,7 @@ use stickslip_studies::paper::{ALPHA, MU, psi, ratio};
 use stickslip_studies::{Cell, Study, StudyColumn, StudyTable};
 
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use crate::error::ReproductionError;
 
 /// The title of the part.
@@ -32,7 +32,7 @@ const COLUMNS: [StudyColumn; 3] = [
 ///
 /// # Errors
 /// The picture cannot be drawn.
-pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells.min(MOST_CELLS) };
     let velocities: Vec<f64> = (0..axis.cells).map(|index| axis.centre(index)).collect();
     let points = velocities.iter().flat_map(|tangential| {
@@ -86,7 +86,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
             rows: points.iter().map(|point| point.map(Cell::Number).to_vec()).collect(),
         }],
     };
-    Ok(Section::new(study, pictures))
+    Ok(ReportSection::new(study, pictures))
 }
 
 /// The line up to which sliding comes to rest, g_t/g_n = 2μ/α, in a plane of velocities up to

@@ -17,7 +17,7 @@ use stickslip_studies::paper::{
 
 use super::figure1::limit_line;
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use super::sweep::Sweep;
 use crate::error::ReproductionError;
 
@@ -36,7 +36,7 @@ const SURFACE: Surface = Surface {
 ///
 /// # Errors
 /// The picture cannot be drawn.
-pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let pair = BodyPair::equal_spheres(STEEL_RADIUS_M, &STEEL, &SURFACE)?;
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells };
     let coordinates = Coordinates::Velocities { pair };
@@ -127,5 +127,9 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         }),
         tables: Vec::new(),
     };
-    Ok(Section::new(study, pictures).with_map("figure2", "Figure 2 as arrays".to_owned(), &sweep))
+    Ok(ReportSection::new(study, pictures).with_map(
+        "figure2",
+        "Figure 2 as arrays".to_owned(),
+        &sweep,
+    ))
 }

@@ -9,7 +9,7 @@ use stickslip_studies::Study;
 use stickslip_studies::paper::{ALPHA, MOST_RATIO_3, MOST_STIFFNESS, MU, Reading};
 
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use super::stiffness_map::{StiffnessMap, title};
 use crate::error::ReproductionError;
 
@@ -20,7 +20,7 @@ pub const TITLE: &str = "Figure 3: restitution over stiffness and impact ratio";
 ///
 /// # Errors
 /// The picture cannot be drawn.
-pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let maps = StiffnessMap::both(reproduction, MOST_RATIO_3);
     let (findings, numbers): (Vec<_>, Vec<_>) = maps.iter().map(extremes).unzip();
     let headings = maps.each_ref().map(|map| map.heading("ε_t"));
@@ -52,7 +52,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     };
     Ok(maps
         .iter()
-        .fold(Section::new(study, pictures), |section, map| map.filed(section, "figure3")))
+        .fold(ReportSection::new(study, pictures), |section, map| map.filed(section, "figure3")))
 }
 
 /// The extreme values of a map, in a sentence and as numbers.

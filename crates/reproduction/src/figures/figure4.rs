@@ -13,7 +13,7 @@ use stickslip_studies::{Study, StudyColumn, StudyTable};
 use super::boundaries::summary;
 use super::points::{Interval, LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use super::section::{AXIS, KAPPA, PHASES, SWITCHES};
 use super::stiffness_map::{StiffnessMap, title};
 use crate::error::ReproductionError;
@@ -41,7 +41,7 @@ type Lines = [Vec<Interval>; 2];
 ///
 /// # Errors
 /// Boundaries cannot be traced, or the picture cannot be drawn.
-pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let verified = reproduction.boundaries()?;
     let lines =
         [intervals(reproduction, Reading::Printed)?, intervals(reproduction, Reading::Axis)?];
@@ -74,7 +74,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         }),
         tables: vec![table],
     };
-    let section = Section { shown: vec!["figure4"], ..Section::new(study, pictures) };
+    let section = ReportSection { shown: vec!["figure4"], ..ReportSection::new(study, pictures) };
     let section = maps.iter().fold(section, |section, map| map.filed(section, "figure4"));
     let title = "the traced boundaries as an atlas, for stickslip locate";
     Ok(section.with_atlas(ATLAS, title, verified))

@@ -11,7 +11,7 @@ use stickslip_studies::{Cell, Study, StudyColumn, StudyTable};
 use super::course::{first_and_last, followed, largest_compression, rows};
 use super::points::{LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use super::section::{AXIS, COURSE, EPS_T, KAPPA, PHASES, POINT, RATIO, SWITCHES};
 use super::stiffness_map::title;
 use crate::error::ReproductionError;
@@ -36,7 +36,7 @@ const COLUMNS: [StudyColumn; 10] = [
 ///
 /// # Errors
 /// Boundaries cannot be traced, or a collision cannot be computed.
-pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(reproduction: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let points = points(&intervals(reproduction, Reading::Axis)?)?;
     let (mut findings, mut tables, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
     let mut summary = Vec::new();
@@ -60,7 +60,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     tables.insert(0, table);
     let headlines = Vec::new();
     let study = Study { name: "figure5", title: TITLE, headlines, findings, json, tables };
-    Ok(Section { shown: vec!["figure5"], ..Section::new(study, pictures) })
+    Ok(ReportSection { shown: vec!["figure5"], ..ReportSection::new(study, pictures) })
 }
 
 fn exhibit(reading: Reading, point: &LetteredPoint) -> Result<Exhibit, ReproductionError> {

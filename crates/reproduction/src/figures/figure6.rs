@@ -12,7 +12,7 @@ use stickslip_studies::{Study, StudyColumn, StudyTable};
 
 use super::course::{followed, rows};
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use super::section::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use crate::error::ReproductionError;
 
@@ -30,7 +30,7 @@ const COLUMNS: [StudyColumn; 7] = [AXIS, KAPPA, RATIO, SWITCHES, PHASES, FIRST_M
 ///
 /// # Errors
 /// A collision cannot be computed.
-pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
+pub fn run(_: &Reproduction) -> Result<ReportSection, ReproductionError> {
     let (mut findings, mut summary) = (Vec::new(), Vec::new());
     let (mut tables, mut pictures) = (Vec::new(), Vec::new());
     let mut minima = Vec::new();
@@ -95,7 +95,7 @@ pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
     tables.insert(0, table);
     let headlines = Vec::new();
     let study = Study { name: "figure6", title: TITLE, headlines, findings, json, tables };
-    Ok(Section { shown: vec!["figure6"], ..Section::new(study, pictures) })
+    Ok(ReportSection { shown: vec!["figure6"], ..ReportSection::new(study, pictures) })
 }
 
 /// The first moment at which the force on the motion turns from braking to driving. There the

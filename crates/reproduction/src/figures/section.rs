@@ -16,7 +16,7 @@ use crate::statements::Audit;
 
 /// A study with everything else that belongs to it.
 #[derive(Debug)]
-pub struct Section {
+pub struct ReportSection {
     /// What was computed.
     pub study: Study,
     /// Its pictures.
@@ -52,11 +52,11 @@ pub enum Content {
 }
 
 /// The main results of all `sections`, a sentence each: the opening of a page that shows them.
-pub fn headlines(sections: &[Section]) -> Vec<String> {
+pub fn headlines(sections: &[ReportSection]) -> Vec<String> {
     sections.iter().flat_map(|section| &section.study.headlines).cloned().collect()
 }
 
-impl Section {
+impl ReportSection {
     /// A study with its pictures, and nothing else.
     pub fn new(study: Study, pictures: Vec<Picture>) -> Self {
         let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());

@@ -9,7 +9,7 @@ use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 use stickslip_studies::paper::{ALPHA, MOST_STIFFNESS, MU, REDUCTION, Reading};
 
 use super::reproduction::Reproduction;
-use super::section::Section;
+use super::section::ReportSection;
 use super::sweep::Sweep;
 
 /// The collisions of a figure, with its axis of stiffness read in one way.
@@ -43,7 +43,7 @@ impl StiffnessMap {
     }
 
     /// `section` with the map in a file.
-    pub fn filed(&self, section: Section, figure: &str) -> Section {
+    pub fn filed(&self, section: ReportSection, figure: &str) -> ReportSection {
         let name = format!("{figure}_{}", self.reading.name());
         let title = self.heading("κ, ψ, g_t/g_n, ε_t and switches as arrays");
         section.with_map(&name, title, &self.sweep)

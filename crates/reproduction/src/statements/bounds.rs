@@ -12,7 +12,7 @@ use stickslip_studies::paper::{
 };
 use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
-use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
 use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
@@ -58,7 +58,7 @@ pub fn largest(subject: &Subject) -> Result<StatementFinding, Stop> {
         if speed.value <= largest::FORCE { "within" } else { "beyond" },
     );
     let kept = spring.value.max(speed.value) <= 1.0 + CLOSE;
-    Ok(StatementFinding::new(Verdict::of(kept), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(kept), evidence, explanation))
 }
 
 /// The largest `value` over κ from 0.01 to 10⁴ and ψ from 0.01 to 3.
@@ -119,7 +119,7 @@ pub fn stiff(subject: &Subject) -> Result<StatementFinding, Stop> {
         largest[3]
     );
     let falls = largest.windows(2).all(|pair| pair[1] < pair[0]) && largest[3] < SMALL;
-    Ok(StatementFinding::new(Verdict::of(falls), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(falls), evidence, explanation))
 }
 
 /// 14: in the range (30) ε_t is close to zero.
@@ -152,13 +152,13 @@ pub fn close_to_zero(subject: &Subject) -> Result<StatementFinding, Stop> {
         kappas[kappas.len() - 1]
     );
     Ok(match close {
-        0 => StatementFinding::new(Verdict::Holds, evidence, explanation),
+        0 => StatementFinding::new(StatementVerdict::Holds, evidence, explanation),
         n if n < kappas.len() => StatementFinding::under(
             format!("from κ = {:.1} on, of those tried", kappas[n]),
             evidence,
             explanation,
         ),
-        _ => StatementFinding::new(Verdict::DoesNotHold, evidence, explanation),
+        _ => StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation),
     })
 }
 
@@ -277,10 +277,10 @@ pub fn steel(subject: &Subject) -> Result<StatementFinding, Stop> {
          {rows} rows on. It counts as seen in the figure if 400 rows show it.",
     );
     if -first.value > LEAST_EPS_T_2 {
-        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
     if on_the_map <= LEAST_EPS_T_2 {
-        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::Holds, evidence, explanation));
     }
     let condition = format!("up to g_t = {reached:.3} m/s, on a map of {rows} rows or more");
     Ok(StatementFinding::under(condition, evidence, explanation))

@@ -5,7 +5,7 @@ use stickslip_studies::paper::{MOST_SWITCHES, STIFFNESS, SWITCHES, ratio};
 use stickslip_studies::search::change;
 
 use super::line::{Line, Span};
-use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
 use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
@@ -72,7 +72,7 @@ pub fn reversals(subject: &Subject) -> Result<StatementFinding, Stop> {
         lines[1].kappa,
         intervals.len()
     );
-    Ok(StatementFinding::new(Verdict::of(printed.max(read) == 0.0), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(printed.max(read) == 0.0), evidence, explanation))
 }
 
 /// 8: as the ratio falls, the count falls after its maximum, with brief rises by two.
@@ -183,10 +183,10 @@ pub fn decompression(subject: &Subject) -> Result<StatementFinding, Stop> {
         100.0 * early_part
     );
     if !late || early_part == 0.0 {
-        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
     if early_part == 1.0 {
-        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::Holds, evidence, explanation));
     }
     let condition =
         format!("if e lies below ψ = {passes:.6}, g_t/g_n = {:.6} in the figures", ratio(passes));
@@ -217,7 +217,7 @@ pub fn signs(subject: &Subject) -> Result<StatementFinding, Stop> {
          of the velocity. They are counted phase by phase; the sign is that at the end.",
         TRIED / 5
     );
-    Ok(StatementFinding::new(Verdict::of(undamped + damped == 0), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(undamped + damped == 0), evidence, explanation))
 }
 
 /// 24: for a small enough ratio there are two switches.
@@ -256,11 +256,11 @@ pub fn small_ratio(subject: &Subject) -> Result<StatementFinding, Stop> {
     let two: Vec<_> =
         (0..).zip(&counts).filter(|(_, count)| **count == 2).map(|(n, _)| n).collect();
     Ok(if two.len() == counts.len() {
-        StatementFinding::new(Verdict::Holds, evidence, explanation)
+        StatementFinding::new(StatementVerdict::Holds, evidence, explanation)
     } else if two.iter().copied().eq((0..INTERVALS).step_by(2)) {
         let condition = "for κ between κ_2m and κ_(2m+1), κ_n = (nπ/(2t_c))²";
         StatementFinding::under(condition.to_owned(), evidence, explanation)
     } else {
-        StatementFinding::new(Verdict::DoesNotHold, evidence, explanation)
+        StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation)
     })
 }

@@ -6,7 +6,7 @@ use stickslip_model::{Collision, Regime};
 use stickslip_studies::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ratio};
 use stickslip_studies::search::maximum;
 
-use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
 use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
@@ -99,13 +99,13 @@ pub fn first_elongation(subject: &Subject) -> Result<StatementFinding, Stop> {
         places[0], places[1]
     );
     if exceptions > 0 {
-        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
     if highest < 2.0 * LOWEST {
-        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::Holds, evidence, explanation));
     }
     if lowest > 0.99 * HIGHEST {
-        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
     let condition =
         format!("above ψ = {highest:.4}, that is g_t/g_n = {:.4} in the figures", ratio(highest));

@@ -8,7 +8,7 @@ use stickslip_solver::Outcome;
 use stickslip_studies::three_parameters::ThreeParameters;
 
 use super::spring::Spring;
-use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
 use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
@@ -60,7 +60,7 @@ pub fn three(subject: &Subject) -> Result<StatementFinding, Stop> {
         cases.len()
     );
     let two = largest < CLOSE && in_si < CLOSE && over_kappa.min(over_psi) > 0.01;
-    Ok(StatementFinding::new(Verdict::of(!two), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(!two), evidence, explanation))
 }
 
 /// κ and ψ of spheres in SI units that are chosen to have `kappa` and `psi`.

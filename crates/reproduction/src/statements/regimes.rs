@@ -2,7 +2,7 @@
 
 use stickslip_model::{Collision, Regime};
 
-use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
 use super::statement::{each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
@@ -39,11 +39,11 @@ pub fn start(subject: &Subject) -> Result<StatementFinding, Stop> {
         return Err(Stop::Open("the integration starts in another regime".to_owned()));
     }
     Ok(match (undamped == TRIED, damped == TRIED) {
-        (true, true) => StatementFinding::new(Verdict::Holds, evidence, explanation),
+        (true, true) => StatementFinding::new(StatementVerdict::Holds, evidence, explanation),
         (true, false) => {
             StatementFinding::under("without damping".to_owned(), evidence, explanation)
         }
-        _ => StatementFinding::new(Verdict::DoesNotHold, evidence, explanation),
+        _ => StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation),
     })
 }
 
@@ -72,7 +72,7 @@ pub fn end(subject: &Subject) -> Result<StatementFinding, Stop> {
          Only a spring at rest with no elongation, as with g_t = 0, stays below it. The shortest last \
          sliding took {shortest:.1e}."
     );
-    Ok(StatementFinding::new(Verdict::of(sticking == 0), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(sticking == 0), evidence, explanation))
 }
 
 /// 5: the number of switches is even.
@@ -95,9 +95,9 @@ pub fn parity(subject: &Subject) -> Result<StatementFinding, Stop> {
          and ends with sliding."
     );
     Ok(match (undamped, damped) {
-        (0, 0) => StatementFinding::new(Verdict::Holds, evidence, explanation),
+        (0, 0) => StatementFinding::new(StatementVerdict::Holds, evidence, explanation),
         (0, _) => StatementFinding::under("without damping".to_owned(), evidence, explanation),
-        _ => StatementFinding::new(Verdict::DoesNotHold, evidence, explanation),
+        _ => StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation),
     })
 }
 
@@ -126,7 +126,7 @@ pub fn damped_end(subject: &Subject) -> Result<StatementFinding, Stop> {
          ψ, which random collisions do not meet.",
         tried.len()
     );
-    Ok(StatementFinding::new(Verdict::of(sticking > 0), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(sticking > 0), evidence, explanation))
 }
 
 /// 18: damping changes quantities, but not how a collision goes.
@@ -153,7 +153,7 @@ pub fn damping(subject: &Subject) -> Result<StatementFinding, Stop> {
          {largest:.1e} at most. Quantities change little, but the contact starts in another way.",
         tried.len()
     );
-    Ok(StatementFinding::new(Verdict::of(starts + parities == 0), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(starts + parities == 0), evidence, explanation))
 }
 
 /// 20: energy is lost only while sliding.
@@ -185,7 +185,11 @@ pub fn energy(subject: &Subject) -> Result<StatementFinding, Stop> {
          {sticking:.1e} of the energy at impact while the spring acts. What sliding takes explains the \
          loss to {unbalanced:.1e}. Both count as nothing up to {CLOSE:e}."
     );
-    Ok(StatementFinding::new(Verdict::of(sticking.max(unbalanced) < CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(
+        StatementVerdict::of(sticking.max(unbalanced) < CLOSE),
+        evidence,
+        explanation,
+    ))
 }
 
 fn last_regime(collision: &Collision) -> Regime {

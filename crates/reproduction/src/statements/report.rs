@@ -6,7 +6,7 @@ use stickslip_studies::{Cell, Study, StudyColumn, StudyTable};
 
 use super::Audit;
 use super::spring::Spring;
-use super::statement::{Statement, Verdict};
+use super::statement::{Statement, StatementVerdict};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.audit/1";
@@ -31,7 +31,7 @@ const EVIDENCE: [StudyColumn; 3] = [
 
 impl Audit {
     /// The number of statements with a verdict.
-    pub fn count(&self, verdict: Verdict) -> usize {
+    pub fn count(&self, verdict: StatementVerdict) -> usize {
         self.statements.iter().filter(|statement| statement.finding.verdict == verdict).count()
     }
 
@@ -84,10 +84,14 @@ impl Audit {
             return "No statement of the paper was tested.".to_owned();
         }
         let verdicts = [
-            (Verdict::Holds, "holds", "hold"),
-            (Verdict::HoldsWithACondition, "holds under a condition", "hold under a condition"),
-            (Verdict::DoesNotHold, "does not hold", "do not hold"),
-            (Verdict::CannotBeDecided, "cannot be decided", "cannot be decided"),
+            (StatementVerdict::Holds, "holds", "hold"),
+            (
+                StatementVerdict::HoldsWithACondition,
+                "holds under a condition",
+                "hold under a condition",
+            ),
+            (StatementVerdict::DoesNotHold, "does not hold", "do not hold"),
+            (StatementVerdict::CannotBeDecided, "cannot be decided", "cannot be decided"),
         ];
         let parts = verdicts.map(|(verdict, one, several)| match self.count(verdict) {
             1 => format!("1 {one}"),

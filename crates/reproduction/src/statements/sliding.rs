@@ -11,7 +11,7 @@ use stickslip_studies::paper::{
 };
 use stickslip_studies::search::change;
 
-use super::statement::{Evidence, StatementFinding, Stop, Verdict};
+use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
 use super::statement::{each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
@@ -46,7 +46,7 @@ pub fn closed_form(_: &Subject) -> Result<StatementFinding, Stop> {
          impulse 1 + ε_n, whatever the law.",
         tried.len()
     );
-    Ok(StatementFinding::new(Verdict::of(largest < CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(largest < CLOSE), evidence, explanation))
 }
 
 /// 9: no switch above g_t/g_n = 3 but for very small κ.
@@ -80,7 +80,7 @@ pub fn above_three(subject: &Subject) -> Result<StatementFinding, Stop> {
         above.len()
     );
     if switching > 0 || limit > SMALL {
-        return Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
     Ok(StatementFinding::under(format!("κ above {limit:.4}"), evidence, explanation))
 }
@@ -122,7 +122,7 @@ pub fn true_limit(subject: &Subject) -> Result<StatementFinding, Stop> {
          {below:.6}. The closed form is 2 from κ = 0.5701 on and rises below. The statement counts as \
          true if the limit is below 2 by more than {CLOSE:e} at all of them."
     );
-    Ok(StatementFinding::new(Verdict::of(highest < 2.0 - CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(highest < 2.0 - CLOSE), evidence, explanation))
 }
 
 /// 11: for small κ there is always a switch.
@@ -142,7 +142,7 @@ pub fn vertical_line(subject: &Subject) -> Result<StatementFinding, Stop> {
     }
     let [first, second, ..] = tops.as_slice() else {
         let explanation = format!("Up to ψ = {HIGHEST:e} there is a switch at every small κ.");
-        return Ok(StatementFinding::new(Verdict::Holds, evidence, explanation));
+        return Ok(StatementFinding::new(StatementVerdict::Holds, evidence, explanation));
     };
     let slope = (second.1 / first.1).ln() / (second.0 / first.0).ln();
     let evidence = evidence
@@ -155,7 +155,7 @@ pub fn vertical_line(subject: &Subject) -> Result<StatementFinding, Stop> {
         first.0 * first.1,
         first.0
     );
-    Ok(StatementFinding::new(Verdict::DoesNotHold, evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation))
 }
 
 /// The ψ between `low` and `high` above which there is no switch.
@@ -222,5 +222,5 @@ pub fn footnote_2(_: &Subject) -> Result<StatementFinding, Stop> {
         off(with_gpa),
         1e6 * FRICTION * force_n / STEEL_STIFFNESS_KG_PER_S2
     );
-    Ok(StatementFinding::new(Verdict::of(off(as_printed) < CLOSE), evidence, explanation))
+    Ok(StatementFinding::new(StatementVerdict::of(off(as_printed) < CLOSE), evidence, explanation))
 }

@@ -26,7 +26,7 @@ pub struct Statement {
 #[derive(Debug)]
 pub struct StatementFinding {
     /// Whether the statement is true, by the rule that the explanation names.
-    pub verdict: Verdict,
+    pub verdict: StatementVerdict,
     /// The condition under which it holds, if there is one.
     pub condition: Option<String>,
     /// The numbers from which the verdict follows.
@@ -37,7 +37,7 @@ pub struct StatementFinding {
 
 /// Whether a statement is true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum StatementVerdict {
     /// The statement is true.
     Holds,
     /// The statement is true under a condition.
@@ -70,13 +70,13 @@ impl Statement {
 
 impl StatementFinding {
     /// A finding without a condition.
-    pub fn new(verdict: Verdict, evidence: Evidence, explanation: String) -> Self {
+    pub fn new(verdict: StatementVerdict, evidence: Evidence, explanation: String) -> Self {
         Self { verdict, condition: None, evidence, explanation }
     }
 
     /// The finding that a statement holds under `condition`.
     pub fn under(condition: String, evidence: Evidence, explanation: String) -> Self {
-        let verdict = Verdict::HoldsWithACondition;
+        let verdict = StatementVerdict::HoldsWithACondition;
         Self { verdict, condition: Some(condition), evidence, explanation }
     }
 
@@ -88,24 +88,24 @@ impl StatementFinding {
         explanation: String,
     ) -> Self {
         match (printed, axis) {
-            (true, _) => Self::new(Verdict::Holds, evidence, explanation),
+            (true, _) => Self::new(StatementVerdict::Holds, evidence, explanation),
             (false, true) => {
                 let condition = "if the figures' κ is α times that of (24)".to_owned();
                 Self::under(condition, evidence, explanation)
             }
-            (false, false) => Self::new(Verdict::DoesNotHold, evidence, explanation),
+            (false, false) => Self::new(StatementVerdict::DoesNotHold, evidence, explanation),
         }
     }
 }
 
-impl Verdict {
+impl StatementVerdict {
     /// The verdict on a statement that is either true or not.
     pub fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::DoesNotHold }
     }
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for StatementVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Holds => "holds",
@@ -127,9 +127,11 @@ impl Stop {
     ) -> Result<StatementFinding, ReproductionError> {
         match tested {
             Ok(finding) => Ok(finding),
-            Err(Self::Open(reason)) => {
-                Ok(StatementFinding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
-            }
+            Err(Self::Open(reason)) => Ok(StatementFinding::new(
+                StatementVerdict::CannotBeDecided,
+                Evidence::default(),
+                reason,
+            )),
             Err(Self::Failed(error)) => {
                 Err(Arc::try_unwrap(error).unwrap_or_else(ReproductionError::Shared))
             }

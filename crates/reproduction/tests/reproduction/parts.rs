@@ -4,26 +4,26 @@
 use std::sync::LazyLock;
 
 use stickslip_plane::progress::SILENT;
-use stickslip_reproduction::figures::{Reproduction, Section, headlines};
+use stickslip_reproduction::figures::{ReportSection, Reproduction, headlines};
 use stickslip_reproduction::statements::{
-    self, Audit, Evidence, Spring, Statement, StatementFinding, Verdict,
+    self, Audit, Evidence, Spring, Statement, StatementFinding, StatementVerdict,
 };
 use stickslip_studies::paper::{Reading, STIFFNESS, psi};
 use stickslip_studies::{Cell, StudyTable, convergence};
 
 /// All parts but the study of convergence, which has tests of its own and takes long.
-static SECTIONS: LazyLock<Vec<Section>> = LazyLock::new(|| {
+static SECTIONS: LazyLock<Vec<ReportSection>> = LazyLock::new(|| {
     let reproduction = Reproduction::new(24, Spring::Reset);
     let parts = Reproduction::parts().iter();
     let parts = parts.filter(|part| part.title != convergence::TITLE);
     parts.map(|part| part.run(&reproduction).expect("a section")).collect()
 });
 
-fn section(name: &str) -> &'static Section {
+fn section(name: &str) -> &'static ReportSection {
     SECTIONS.iter().find(|section| section.study.name == name).expect("the section")
 }
 
-fn table(section: &'static Section, name: &str) -> &'static StudyTable {
+fn table(section: &'static ReportSection, name: &str) -> &'static StudyTable {
     section.study.tables.iter().find(|table| table.name == name).expect("the table")
 }
 
@@ -119,7 +119,7 @@ fn headlines_say_what_was_found() {
 fn the_audit_is_there_as_data() {
     let audit = section("audit").audit.as_ref().expect("an audit");
     assert_eq!(audit.statements.len(), usize::from(statements::COUNT));
-    assert_eq!(audit.count(Verdict::HoldsWithACondition), 9);
+    assert_eq!(audit.count(StatementVerdict::HoldsWithACondition), 9);
     let others = SECTIONS.iter().filter(|section| section.study.name != "audit");
     assert!(others.map(|section| &section.audit).all(Option::is_none));
 }
@@ -139,7 +139,7 @@ fn the_headline_of_another_model_has_other_numbers() {
         paraphrase: "",
         place: "",
         finding: StatementFinding::new(
-            Verdict::CannotBeDecided,
+            StatementVerdict::CannotBeDecided,
             Evidence::default(),
             String::new(),
         ),

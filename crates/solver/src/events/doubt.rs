@@ -1,4 +1,9 @@
 //! By how much rounding may move the place of an event, and hide what a guard is there.
+//!
+//! What follows at an instant is as uncertain as its time. Where a guard ends up near zero, the run
+//! asks what it would be if the instant had come later by the rounding of its time: the state there
+//! is moved along the flow, and everything acts on it that has acted. A guard that is no farther
+//! from zero than this stands on its zero.
 
 use crate::events::along_step::{rounding, scales};
 use crate::events::arrival::HERE;

@@ -1,7 +1,14 @@
 //! The place of a switch, located by steps of the method.
 //!
 //! The dense output only gives the place to begin. Each iteration takes a step from the same start
-//! to a trial place. So a switch is as accurate as any other point of the run.
+//! to a trial place. So a switch is as accurate as any other point of the run. As soon as the rest
+//! is below 1e-5 of the step, Newton's method along the flow, with the midpoint rule, bridges it.
+//! The error is the cube of this part, which is below rounding.
+//!
+//! The error of a place (`doubt`) is the rounding of time and state, twice that of one step since
+//! it adds up, or the noise of the guard's own values if that is larger, over the slope of the
+//! guard, and four roundings of the time since the phase began. The slope is taken where the guard
+//! leaves what rounding hides: over a thousandth of a step, exp(y) − 1 may have another one.
 
 mod rise;
 

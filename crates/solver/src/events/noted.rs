@@ -1,4 +1,8 @@
 //! Events that only report a crossing, since nothing changes there: a step is not cut at them.
+//!
+//! The guard is examined again behind the bracket of its crossing, as soon as its values have left
+//! their noise. If another guard changes something at that instant and precedes the note, the note
+//! waits for its turn.
 
 use crate::events::event::{Crossed, Event, Note, only};
 use crate::events::examination::Examination;

@@ -5,6 +5,12 @@
 //! not declared to be smooth, three more are compared with them. All other cases go to
 //! [`crate::events::isolate`].
 //!
+//! The step knows the state at its ends and at θ = 1/4, 1/3, 3/5 and 6/7. In the 8(5,3) pair the
+//! inner states are stages that satisfy the simplifying conditions to order 5; in the 5(4) pair
+//! they come from the dense output. The quintic, in Bernstein form, says that the guard is
+//! positive, negative, or falls once and steeply, if it does so by more than its error: the last
+//! term of the quintic and a part of the term before.
+//!
 //! The dense output is not used here: with the 8(5,3) pair it costs three more stages. A first look
 //! at six states costs about a fifth of a cheap step.
 

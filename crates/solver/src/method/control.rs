@@ -1,7 +1,9 @@
 //! Step-size control: how large the next step is.
 //!
-//! It repeats the step sequences of the codes DOPRI5 and DOP853. Source: Hairer, Nørsett and
-//! Wanner, *Solving Ordinary Differential Equations I*, sections II.4 and IV.2.
+//! It repeats the step sequences of the codes DOPRI5 and DOP853, with a safety factor of 0.9. Order
+//! 8 has the exponent 1/8 and step factors from 1/3 to 6, order 5 a proportional-integral rule with
+//! β = 0.04 and step factors from 0.2 to 10. Source: Hairer, Nørsett and Wanner, *Solving Ordinary
+//! Differential Equations I*, sections II.4 and IV.2.
 
 use crate::method::store::Store;
 use crate::method::tableau::Method;

@@ -2,7 +2,7 @@
 //!
 //! Most cases run on y' = 1. Both methods integrate this exactly, so that the guard along the run
 //! is the planted function of s itself. `cargo test -p stickslip-solver --test solver
-//! print_the_table -- --ignored --nocapture` prints the table of `docs/numerics.md`.
+//! print_the_table -- --ignored --nocapture` prints the table of `crates/validation/JOURNAL.md`.
 
 mod guards;
 mod planted;
@@ -33,7 +33,7 @@ impl Score {
 }
 
 #[test]
-#[ignore = "prints the table of docs/numerics.md"]
+#[ignore = "prints the table of the journal"]
 fn print_the_table() {
     println!("| case | step sizes | planted | found | missed | invented | largest error |");
     println!("|---|---|---|---|---|---|---|");

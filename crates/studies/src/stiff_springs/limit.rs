@@ -59,9 +59,8 @@ pub struct Crest {
 /// ```
 ///
 /// # Errors
-/// [`StudyError::Settings`] unless κ > 0 and 0 < ψ < 2: from ψ = 2 on nothing oscillates;
-/// [`StudyError::Exact`] if κ is more than the exact engine takes; [`StudyError::Search`] if the
-/// search fails.
+/// [`StudyError::Settings`] unless κ > 0 and 0 < ψ < 2: from ψ = 2 on nothing oscillates; also if
+/// the search fails. [`StudyError::Exact`] if κ is more than the exact engine takes.
 pub fn envelope(kappa: f64, psi: f64) -> Result<Crest, StudyError> {
     envelope_within(kappa, psi, SMOOTH)
 }

@@ -4,8 +4,7 @@ use crate::curve::Curve;
 use crate::family::Family;
 use crate::regions::outline::OutlinePart;
 use crate::stack::conditions::{Condition, Conditions};
-use crate::stack::sample::Sample;
-use crate::stack::structure::side_of;
+use crate::stack::structure::{Sample, side_of};
 use crate::window::Point;
 
 /// Conditions for points to meet, with a guess of the place.

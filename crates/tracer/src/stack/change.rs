@@ -3,7 +3,7 @@
 use crate::family::Family;
 use crate::regions::locate::Location;
 use crate::stack::meeting::StackMeeting;
-use crate::stack::sample::Sample;
+use crate::stack::structure::Sample;
 
 /// A change of the structure of atlases with the third parameter.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use crate::atlas::AtlasOf;
 use crate::family::Family;
 use crate::regions::outline::OutlinePart;
 use crate::regions::region::CurveSide;
@@ -31,6 +32,13 @@ struct Node<Label> {
 #[derive(Clone, Debug)]
 pub(super) struct Structure<Label> {
     nodes: Vec<Node<Label>>,
+}
+
+/// An atlas at a value of the third parameter, with its structure.
+pub(super) struct Sample<F: Family> {
+    pub value: f64,
+    pub atlas: AtlasOf<F>,
+    pub structure: Structure<F::Label>,
 }
 
 impl<Label: Clone + Ord> Structure<Label> {

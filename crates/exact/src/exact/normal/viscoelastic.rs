@@ -249,7 +249,7 @@ impl Trajectory for Viscoelastic {
         let v = if self.scale.strong { q - alpha * (u * u) } else { state.v + dv };
         let half = 0.5 / u;
         let (u2, vq) = (u * u, v * q);
-        // F = UQ and dF/dT = F′/(2U); see docs/physics.md.
+        // F = UQ and dF/dT = F′/(2U); see PROOFS.md.
         let force_rate = half * vq + u * (alpha * v - beta * u * q);
         let bend = 2.0 * alpha * v * v
             - q * (u * q + 3.0 * beta * u * v + 2.0 * alpha * u * u2)

@@ -5,7 +5,6 @@ use stickslip_tracer::regions::{Finding, SubdivisionError};
 
 use super::layout::SCHEMA;
 use crate::chart::Chart;
-use crate::sheet::TooNarrow;
 
 /// The reason why a document is not an atlas.
 ///
@@ -38,9 +37,9 @@ pub enum AtlasDocumentError {
     /// The chart does not map the window onto an area.
     #[error("{0:?} does not map the window onto an area")]
     Chart(Chart),
-    /// No collision has the dampings and the law of the window.
+    /// No collision has the dampings and the law of the window, or the window is too narrow.
     #[error("window: {0}")]
-    Law(#[from] InvalidValue),
+    Values(#[from] InvalidValue),
     /// The damping is negative.
     #[error("window.damping = {damping:?}: expected 0 or above")]
     Damping {
@@ -53,9 +52,6 @@ pub enum AtlasDocumentError {
         /// The accuracy of the document.
         tolerance: f64,
     },
-    /// The window is too narrow.
-    #[error("window: {0}")]
-    Narrow(#[from] TooNarrow),
     /// An entry of a list has another place than its `id` says.
     #[error("{list}[{index}].id = {id}; expected {index}, its place in the list")]
     Id {

@@ -3,7 +3,8 @@
 //! A part of the step whose bounds exclude zero has no crossing. A part whose slopes have one sign
 //! is monotone, and one whose second derivatives have one sign has at most one extremum: the signs
 //! at the ends and at the extremum decide. All other parts are halved. What remains at rounding is
-//! a jump, a pole, or a touch that may be a pair of crossings.
+//! a jump, a pole, or a touch that may be a pair of crossings. Without bounds it is a pole if its
+//! values, by steps of the method, grow towards it, and otherwise a jump.
 
 use crate::error::RunError;
 use crate::events::isolate::{

@@ -1,8 +1,9 @@
 //! A guard that rises from its zero at the start of a step, and comes back before rounding shows
 //! that it has risen: a ball that hops by less than the rounding of its height.
 //!
-//! Its values say nothing about when it comes back, but its first two derivatives do. A transition
-//! that finds the ball on its way up would turn its velocity through the floor.
+//! Its values say nothing about when it comes back, but its first two derivatives do. The event is
+//! there, or where rounding shows that the guard is beyond zero. A transition at the start of a hop
+//! would find the ball on its way up, and turn its velocity through the floor.
 
 use crate::events::along_step::flow;
 use crate::events::arrival::SHOWS;

@@ -6,7 +6,7 @@
 //! B = p(6p³ + 5p² − 6p − 9), C = 2p³(p² − 3).
 //!
 //! K rises only where p is between 0 and √3 and k is small; a trajectory can enter that region only
-//! at p > p\* and leave it only at p < p\*, with p\* = 0.9692288275… (docs/physics.md). Therefore K
+//! at p > p\* and leave it only at p < p\*, with p\* = 0.9692288275… (PROOFS.md). Therefore K
 //! falls, or it falls to one minimum, rises to one maximum and falls. If it rises, it does so where
 //! p = p\*.
 
@@ -17,10 +17,10 @@ use crate::exact::moment::{Moment, Motion, Spring};
 use crate::exact::normal::Trajectory;
 
 /// A number above the maximum of K for every damping. It is largest, 1.8620002…, where the extremes
-/// merge, at a = 0.587758755… (computed; docs/physics.md).
+/// merge, at a = 0.587758755… (computed; PROOFS.md).
 pub const LARGEST_MAXIMUM: f64 = 1.8622;
 
-/// p\*, a zero of the resultant in docs/physics.md.
+/// p\*, a zero of the resultant in PROOFS.md.
 const TANGENCY: f64 = 0.969_228_827_5;
 
 /// The minimum and the maximum of K.

@@ -31,7 +31,7 @@ fn the_table_is_as_good_as_a_trajectory() {
     assert!(worst[0] < 4e-15 && worst[1] < 1e-14, "{worst:?}");
 }
 
-/// What `tests/data/damped_trajectory_bound.py` and docs/physics.md say of the series in use.
+/// What `tests/data/damped_trajectory_bound.py` and PROOFS.md say of the series in use.
 #[test]
 fn the_premises_of_the_error_bounds_hold() {
     const KEPT: usize = super::super::ORDERS;

@@ -1,4 +1,4 @@
-//! The tables of options in docs/command-line.md are made of the help texts of the program.
+//! The lists of options in docs/command-line.md are made of the help texts of the program.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -12,11 +12,14 @@ const UPDATE: &str = "UPDATE_EXPECT";
 const BEGIN: &str = "<!-- options of ";
 const END: &str = "<!-- end -->";
 
+/// The most columns of a line.
+const WIDTH: usize = 100;
+
 #[test]
 fn the_page_has_the_options_of_the_program() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/command-line.md");
     let page = fs::read_to_string(&path).expect("the page");
-    let made = with_tables(&page);
+    let made = with_lists(&page);
     if env::var_os(UPDATE).is_some() {
         fs::write(&path, &made).expect("the page is written");
         return;
@@ -25,23 +28,24 @@ fn the_page_has_the_options_of_the_program() {
     assert!(
         page == made,
         "docs/command-line.md has other options than the program, first {different:#?}; run\n\
-         {UPDATE}=1 cargo test -p stickslip-cli --test command_line option_tables\n\
-         to write its tables anew"
+         {UPDATE}=1 cargo test -p stickslip-cli --test command_line option_lists\n\
+         to write its lists anew"
     );
 }
 
 #[test]
 fn an_option_stands_once() {
     let page =
-        with_tables(&format!("{BEGIN}map -->\n{END}\n{BEGIN}trace -->\nstale rows\n{END}\n"));
-    assert_eq!(page.matches("| `--mu M` | Coefficient").count(), 1, "{page}");
-    assert!(page.contains("`--mu`, `--alpha`, `--damping`, "), "{page}");
-    assert!(page.contains("| as for `map` |"), "{page}");
-    assert!(!page.contains("stale rows"), "{page}");
+        with_lists(&format!("{BEGIN}map -->\n{END}\n{BEGIN}trace -->\nstale lines\n{END}\n"));
+    assert_eq!(page.matches("- `--mu M`: Coefficient").count(), 1, "{page}");
+    assert!(page.replace("\n  ", " ").contains("`--mu`, `--alpha`, `--damping`, "), "{page}");
+    assert!(page.contains("- as for `map`: "), "{page}");
+    assert!(!page.contains("stale lines"), "{page}");
+    assert!(page.lines().all(|line| line.chars().count() <= WIDTH), "{page}");
 }
 
-/// The page with its tables made anew. Every command has one.
-fn with_tables(page: &str) -> String {
+/// The page with its lists made anew. Every command has one.
+fn with_lists(page: &str) -> String {
     let mut program = stickslip_cli::commands();
     program.build();
     let mut seen = HashMap::new();
@@ -54,24 +58,24 @@ fn with_tables(page: &str) -> String {
             continue;
         };
         let command = program.find_subcommand(name).expect("a command");
-        text.extend(["\n", &table(command, &mut seen), "\n", END, "\n"]);
-        assert!(lines.any(|line| line == END), "the table of {name} has no end");
+        text.extend(["\n", &list(command, &mut seen), "\n", END, "\n"]);
+        assert!(lines.any(|line| line == END), "the list of {name} has no end");
     }
     text
 }
 
-/// A row, and the command that had it first.
+/// An item, and the command that had it first.
 type Seen = HashMap<String, String>;
 
-/// The options of a command as a table. What another command has too stands there only once.
-fn table(command: &Command, seen: &mut Seen) -> String {
-    let mut rows = vec!["| option | meaning |\n|---|---|\n".to_owned()];
+/// The options of a command as a list. What another command has too stands there only once.
+fn list(command: &Command, seen: &mut Seen) -> String {
+    let mut items = Vec::new();
     let mut elsewhere: Vec<(String, Vec<String>)> = Vec::new();
     for arg in command.get_arguments().filter(|arg| !arg.is_hide_set() && arg.get_id() != "help") {
-        let row = row(arg);
-        let Some(first) = seen.get(&row) else {
-            seen.insert(row.clone(), command.get_name().to_owned());
-            rows.push(row);
+        let item = item(arg);
+        let Some(first) = seen.get(&item) else {
+            seen.insert(item.clone(), command.get_name().to_owned());
+            items.push(item);
             continue;
         };
         match elsewhere.iter_mut().find(|(command, _)| command == first) {
@@ -80,15 +84,38 @@ fn table(command: &Command, seen: &mut Seen) -> String {
         }
     }
     for (first, names) in elsewhere {
-        rows.push(format!("| {} | as for `{first}` |\n", names.join(", ")));
+        items.push(wrapped(&format!("- as for `{first}`: {}", names.join(", "))));
     }
-    rows.concat()
+    items.concat()
 }
 
-fn row(arg: &Arg) -> String {
+fn item(arg: &Arg) -> String {
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-    let meaning = format!("{}{}{}", in_code(&help), values(arg), default(arg));
-    format!("| {} | {} |\n", spelling(arg), meaning.replace('|', "\\|"))
+    let (values, default) = (values(arg), default(arg));
+    wrapped(&format!("- {}: {}{values}{default}", spelling(arg), in_code(&help)))
+}
+
+/// The lines of an item.
+fn wrapped(item: &str) -> String {
+    let mut text = String::new();
+    let mut width = 0;
+    for word in item.split(' ') {
+        let wide = word.chars().count();
+        match width {
+            0 => {}
+            _ if width + 1 + wide > WIDTH => {
+                text += "\n  ";
+                width = 2;
+            }
+            _ => {
+                text.push(' ');
+                width += 1;
+            }
+        }
+        text += word;
+        width += wide;
+    }
+    text + "\n"
 }
 
 /// The option alone, or the name of its value where it has no name.
@@ -104,7 +131,7 @@ fn spelling(arg: &Arg) -> String {
     let many = arg.get_num_args().is_some_and(|count| count.max_values() > 1);
     let value = value.map(|name| format!("{name}{}", if many { "…" } else { "" }));
     let words: Vec<String> = long.into_iter().chain(value).collect();
-    format!("`{}`", words.join(" ").replace('|', "\\|"))
+    format!("`{}`", words.join(" "))
 }
 
 /// The default as help texts show it, if they do not tell it themselves.
@@ -129,10 +156,12 @@ fn values(arg: &Arg) -> String {
     if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) }
 }
 
-/// A help text whose options are set as code.
+/// A help text whose options are set as code, also the name `-`, which else may begin a list.
 fn in_code(help: &str) -> String {
     let word = |word: &str| match word.trim_end_matches([',', ';', '.', ':']) {
-        option if option.starts_with("--") => format!("`{option}`{}", &word[option.len()..]),
+        option if option == "-" || option.starts_with("--") => {
+            format!("`{option}`{}", &word[option.len()..])
+        }
         _ => word.to_owned(),
     };
     help.split(' ').map(word).collect::<Vec<_>>().join(" ")
