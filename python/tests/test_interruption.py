@@ -152,7 +152,6 @@ def test_long_calls_report_their_progress() -> None:
         lambda progress: stickslip.map((1, 2), (1, 2), (9, 9), progress=progress),
         lambda progress: stickslip.impact(of("Bodies"), kappa, 0.5, progress=progress),
         lambda progress: family().labels(kappa / 6, 0.6, progress=progress),
-        lambda progress: of("FamilyAtlas").decide(family(), [0.6], [0.7], progress=progress),
         lambda progress: stickslip.system(BALL).sensitivities("restitution", progress=progress),
         lambda progress: recorded.sensitivities("y0", progress=progress),
         lambda progress: bouncing.orbit(settle=100.0, progress=progress),

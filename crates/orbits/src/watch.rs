@@ -81,3 +81,12 @@ impl<'a> Watched<'a> {
         self.watch.is_stopped()
     }
 }
+
+impl Drop for Watched<'_> {
+    /// However it has ended, the run is over.
+    fn drop(&mut self) {
+        if self.span.is_some() {
+            self.watch.advance((Self::STEPS + 1 - self.next.get()) as usize);
+        }
+    }
+}

@@ -22,10 +22,8 @@ const PAUSE: Duration = Duration::from_millis(100);
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
-    /// Ends the lines when it is dropped; none on a terminal.
-    _lines: Option<Sender<()>>,
-    /// Ends the questions when it is dropped; none if it is told.
-    _questions: Option<Sender<()>>,
+    /// Ends lines, where there is no terminal, and questions, unless it is told, when it is dropped.
+    beside: Vec<Sender<()>>,
 }
 
 impl Bar {
@@ -43,7 +41,7 @@ impl Bar {
             bar.set_length(steps as u64);
             bar.set_position(done as u64);
         };
-        made._questions = Some(every(PAUSE, ask));
+        made.beside.push(every(PAUSE, ask));
         made
     }
 
@@ -72,7 +70,7 @@ impl Bar {
         let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let seen = io::stderr().is_terminal();
         let lines = (!seen).then(|| lines(bar.clone(), INTERVAL, say));
-        Self { bar, _lines: lines, _questions: None }
+        Self { bar, beside: lines.into_iter().collect() }
     }
 
     /// Shows that `count` more are done.
