@@ -92,7 +92,9 @@ def solve_many(
     >>> bool(np.allclose(found.end_state.sel(component="y0"), np.exp([-1.0, -2.0])))
     True
     """
-    xr = library("xarray", "for solve_many")
+    library("xarray", "for solve_many")
+    import xarray as xr
+
     given = dict(parameters or {})
     start, end = (None, None) if t_span is None else span(t_span)
     state = None if y0 is None else state_at_start(y0)
@@ -265,9 +267,10 @@ class _Runs:
         threads: int | None,
     ) -> Dataset:
         """The same without events, on Dask. A task holds only its part of each array."""
+        library("dask.array", "for chunks")
+        import dask.array as da
         import xarray as xr
 
-        da = library("dask.array", "for chunks")
         dims, shape = axes
         if not dims:
             raise ValueError("chunks: nothing varies; expected an array of a parameter")

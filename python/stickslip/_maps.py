@@ -75,7 +75,9 @@ def map(
     (ratio, kappa) with psi as a further coordinate. The other arguments are those of `eps_t`; a law is
     an attribute of the result.
     """
-    xr = library("xarray", "for map")
+    library("xarray", "for map")
+    import xarray as xr
+
     if (psi is None) == (ratio is None):
         raise ValueError("expected exactly one of psi and ratio")
     if not 0 <= damping < np.inf:

@@ -148,7 +148,7 @@ def _edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """The edges of cells around values."""
     steps = np.diff(values)
     if not steps.size:
-        return values[0] + np.array([-0.5, 0.5])
+        return np.array([values[0] - 0.5, values[0] + 0.5])
     middles = values[:-1] + 0.5 * steps
     first, last = values[0] - 0.5 * steps[0], values[-1] + 0.5 * steps[-1]
     return np.concatenate([[first], middles, [last]])

@@ -106,8 +106,8 @@ class Plane(Tabular, Generic[Native]):
         frame = self._frame()
         if colours:
             x, y = cells(*frame["xlim"]), cells(*frame["ylim"])
-            style = {"cmap": growing(), "alpha": 0.5, "zorder": 0, "rasterized": True}
-            ax.pcolormesh(x, y, self._counts(x, y[:, None]), shading="nearest", **style)
+            style: dict[str, Any] = {"cmap": growing(), "alpha": 0.5, "zorder": 0}
+            ax.pcolormesh(x, y, self._counts(x, y[:, None]), shading="nearest", rasterized=True, **style)
         named = set()
         for kind, points in self._lines():
             name = None if kind in named else kind

@@ -82,7 +82,9 @@ def sweep(
     >>> int(found.switch_count.sel(kappa=63, psi=0.5))
     6
     """
-    xr = library("xarray", "for sweep")
+    library("xarray", "for sweep")
+    import xarray as xr
+
     engine = Engine.of(
         method, rtol, atol, _laws.attributes(law, tangential_damping), quantities, errors, threads
     )
@@ -169,7 +171,9 @@ def write_sweep(
 
 def _lazy(plan: Plan, engine: Engine, block: tuple[int, ...], threads: int) -> dict[str, Any]:
     """Dask arrays of the quantities. A task holds only its part of each parameter."""
-    da = library("dask.array", "for chunks")
+    library("dask.array", "for chunks")
+    import dask.array as da
+
     most = dict(zip(plan.dims, block, strict=True))
     pairs: list[Any] = []
     for name in plan.parameters:

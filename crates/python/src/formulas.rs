@@ -387,7 +387,9 @@ fn columns<'py>(
         columns.set_item("segment_modes", step_modes.into_pyarray(py))?;
         let count = steps.iter().map(|it| it.coefficients.len()).sum();
         let mut coefficients = Vec::with_capacity(count);
-        steps.iter().for_each(|it| coefficients.extend_from_slice(&it.coefficients));
+        for step in steps {
+            coefficients.extend_from_slice(&step.coefficients);
+        }
         columns.set_item("coefficients", reals(coefficients))?;
     }
     columns.set_item("start_time", found.start())?;

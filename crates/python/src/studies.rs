@@ -141,7 +141,7 @@ pub fn reproduce_all(
     };
     match watched(py, threads, progress.as_ref(), work)? {
         Ok(()) => Ok(None),
-        Err(stickslip_cli::Failure::Objection(objection)) => Ok(Some(objection.to_string())),
+        Err(stickslip_cli::Failure::Objection(objection)) => Ok(Some(objection)),
         Err(error) => Err(PyOSError::new_err(error.to_string())),
     }
 }
