@@ -264,6 +264,10 @@ def test_arrays_of_collisions_keep_their_shape() -> None:
 
 
 def test_missing_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    # They need pandas themselves.
+    import xarray  # noqa: F401
+    import zarr  # noqa: F401
+
     found = of("Solution")
     decay = stickslip.system("state x = 1\nx' = -x\nend = 1")
     for library, call in (
