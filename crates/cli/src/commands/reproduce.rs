@@ -97,8 +97,8 @@ pub fn run(arguments: &ReproduceArguments) -> Result<(), Failure> {
 }
 
 /// Computes all parts, writes the files of each part as soon as it is done, and the page at the
-/// end. Before each part, `tell` hears its index, their number and its title; the last one is not of
-/// the paper.
+/// end. Before each part, `tell` hears its index, their number and its title; the last one is not
+/// of the paper.
 ///
 /// # Errors
 /// As [`run`].

@@ -22,7 +22,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
-    /// Ends lines, where there is no terminal, and questions, unless it is told, when it is dropped.
+    /// Ends lines, where there is no terminal, and questions, unless it is told, when dropped.
     beside: Vec<Sender<()>>,
 }
 
