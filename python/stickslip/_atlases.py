@@ -174,6 +174,10 @@ class Atlas(Plane[_native.Atlas]):
     def _labels(self) -> Iterator[tuple[str, float, tuple[float, float]]]:
         return ((str(one.switch_count), one.area_share, one.sample) for one in self.regions)
 
+    def _counts(self, x: Floats, y: Floats) -> Floats:
+        count = self.locate(x, y).switch_count
+        return np.where(count < 0, np.nan, count)
+
     def _frame(self) -> dict[str, Any]:
         (low, high), psi = self.window["kappa"], self.window["psi"]
         return {

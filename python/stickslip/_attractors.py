@@ -5,16 +5,22 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip import _orbit_pictures
+from stickslip._axes import svg
 from stickslip._compiled import _number
 from stickslip._orbits import Begin, Orbit, _parameter, _read, first_of
+from stickslip._progress import Progress, reported, reporting
 from stickslip._shown import Shown
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from stickslip._formulas import FormulaSystem
 
 
@@ -43,6 +49,21 @@ class Diagram(Shown):
     up: NDArray[np.float64]
     down: NDArray[np.float64]
     troubles: list[tuple[float, str]]
+    components: list[str]
+
+    def plot(self, ax: Axes | None = None, *, component: str | None = None, **points: Any) -> Axes:
+        """Draws a component, the first one unless it is named, over the parameter. `points` is for
+        matplotlib."""
+        return _orbit_pictures.diagram(self, ax, component, points)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
+
+    def _place(self, component: str | None) -> int:
+        if component is not None and component not in self.components:
+            expected = ", ".join(self.components)
+            raise ValueError(f"component = {component!r}; expected one of {expected}")
+        return 0 if component is None else self.components.index(component)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -69,6 +90,13 @@ class Basins(Shown):
     attractors: list[Attractor]
     labels: NDArray[np.int64]
 
+    def plot(self, ax: Axes | None = None, **colours: Any) -> Axes:
+        """Draws the attractors of all runs in colours. `colours` is for matplotlib."""
+        return _orbit_pictures.basins(self, ax, colours)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
+
 
 def section(
     system: FormulaSystem,
@@ -76,10 +104,12 @@ def section(
     span: tuple[float, float],
     begin: Begin,
     parameters: Mapping[str, float] | None,
+    progress: Progress | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """See `FormulaSystem.section`."""
     values, first = system.values(parameters), first_of(system, begin)
-    points = system._orbits.section(values, first, rule, _span(span))
+    run = partial(system._orbits.section, values, first, rule, _span(span))
+    points = reporting(progress, "section", run)
     return np.array([s for s, _ in points]), _states(system, [state for _, state in points])
 
 
@@ -90,19 +120,21 @@ def diagram(
     span: tuple[float, float],
     begin: Begin,
     parameters: Mapping[str, float] | None,
+    progress: Progress | None,
 ) -> Diagram:
     """See `FormulaSystem.diagram`."""
     name, given = over
     values, first = system.values(parameters), first_of(system, begin)
     row = (_parameter(system, name), _row(given, "values"))
-    both = system._orbits.diagram(values, first, row, rule, _span(span))
+    with reported(progress, "diagram") as report:
+        both = system._orbits.diagram(values, first, row, rule, _span(span), report)
 
     def columns(found: list[_Column]) -> NDArray[np.float64]:
         rows = [[value, *state] for value, points, _ in found for _, state in points]
         return np.array(rows).reshape(-1, 1 + len(system.components)).T
 
     troubles = [(value, why) for found in both for value, _, why in found if why is not None]
-    return Diagram(name, columns(both[0]), columns(both[1]), troubles)
+    return Diagram(name, columns(both[0]), columns(both[1]), troubles, system.components)
 
 
 def exponents(
@@ -110,21 +142,23 @@ def exponents(
     span: tuple[float, float],
     begin: Begin,
     parameters: Mapping[str, float] | None,
+    progress: Progress | None,
 ) -> Exponents:
     """See `FormulaSystem.exponents`."""
     values, first = system.values(parameters), first_of(system, begin)
-    found, spread, events = system._orbits.exponents(values, first, _span(span))
+    with reported(progress, "exponents") as report:
+        found, spread, events = system._orbits.exponents(values, first, _span(span), report)
     return Exponents(np.array(found), spread, events)
 
 
 def basins(
     system: FormulaSystem,
     components: tuple[str, str],
-    x: ArrayLike,
-    y: ArrayLike,
+    grid: tuple[ArrayLike, ArrayLike],
     settle: float,
     begin: Begin,
     parameters: Mapping[str, float] | None,
+    progress: Progress | None,
 ) -> Basins:
     """See `FormulaSystem.basins`."""
     names = list(system.components)
@@ -132,10 +166,11 @@ def basins(
         if name not in names:
             raise ValueError(f"component = {name!r}; expected one of {', '.join(names)}")
     places = [names.index(name) for name in components]
-    rows = (_row(x, "x"), _row(y, "y"))
+    rows = (_row(grid[0], "x"), _row(grid[1], "y"))
     values, first = system.values(parameters), first_of(system, begin)
     time = _number(settle, "settle")
-    texts, labels = system._orbits.basins(values, first, places, rows, time)
+    with reported(progress, "basins") as report:
+        texts, labels = system._orbits.basins(values, first, places, rows, time, report)
     attractors = []
     for record in map(json.loads, texts):
         state = record.get("state")

@@ -18,6 +18,8 @@ Panels: TypeAlias = "Axes | Sequence[Axes] | None"
 
 DASHES = ("-", "--", "-.", ":")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+#: Columns and rows of a map.
+_CELLS = 300
 #: Lines with more points are pixels in SVG documents.
 _MOST_POINTS = 20_000
 
@@ -41,7 +43,7 @@ def panels(ax: Panels, count: int) -> list[Axes]:
 
 
 def _new_figure(count: int) -> Any:
-    plt = library("matplotlib.pyplot", "plot", "to draw")
+    plt = library("matplotlib.pyplot", "to draw")
     return plt.figure(figsize=_size(count), layout="constrained")
 
 
@@ -73,6 +75,8 @@ def legend(ax: Axes, **options: Any) -> None:
     handles, labels = ax.get_legend_handles_labels()
     known = dict(zip(labels, handles, strict=True))
     if known:
+        # What all numbers of the axis share stands above it too.
+        ax.yaxis.set_offset_position("right")
         columns = max(1, min(len(known), 84 // (8 + max(map(len, known)))))
         place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0)}
         style: dict[str, Any] = {"ncols": columns, "frameon": False, "fontsize": "small"}
@@ -87,3 +91,11 @@ def scale(values: Any) -> Any:
         return "linear"
     steps = np.diff(found)
     return "linear" if steps.size > 1 and np.ptp(steps) < 1e-6 * found[-1] else "log"
+
+
+def cells(low: float, high: float) -> Any:
+    """The centres of cells of a map, in the scale of an axis."""
+    parts = (np.arange(_CELLS) + 0.5) / _CELLS
+    if scale([low, high]) == "log":
+        return low * (high / low) ** parts
+    return low + (high - low) * parts

@@ -22,6 +22,7 @@ from stickslip._collisions import (
     eps_t_and_switch_count,
     psi_of_ratio,
 )
+from stickslip._libraries import library
 from stickslip._maps import ATTRIBUTES
 
 if TYPE_CHECKING:
@@ -179,8 +180,7 @@ class Plan:
         mu: Parameter | None,
         alpha: Parameter | None,
     ) -> Plan:
-        import xarray as xr
-
+        xr = library("xarray", "for sweeps")
         if (psi is None) == (ratio is None):
             raise ValueError("expected exactly one of psi and ratio")
         if ratio is None and not (mu is None and alpha is None):

@@ -18,7 +18,7 @@ from stickslip._arrays import numbers, real
 from stickslip._axes import Panels, svg
 from stickslip._laws import Law
 from stickslip._libraries import library
-from stickslip._progress import keeping
+from stickslip._progress import Progress, keeping, reported
 from stickslip._shown import Shown
 from stickslip._tabular import Columns, Tabular, write_parquet
 
@@ -360,7 +360,7 @@ class Collisions(Tabular):
 
         Itineraries are a dictionary array, the switches of a row a list of structs.
         """
-        pa = library("pyarrow", "arrow", "for to_arrow")
+        pa = library("pyarrow", "for to_arrow")
         present = self.itinerary_codes.reshape(-1) >= 0
         codes = pa.array(self.itinerary_codes.reshape(-1), mask=~present)
         fields = [
@@ -400,7 +400,7 @@ class Collisions(Tabular):
         """
         from stickslip._maps import ATTRIBUTES
 
-        xr = library("xarray", "xarray", "for to_xarray")
+        xr = library("xarray", "for to_xarray")
         given = {name: getattr(self, name) for name in ("kappa", "psi", "damping")}
         dims = _dimensions(given, self.shape)
         coordinates = {}
@@ -618,12 +618,14 @@ def eps_t(
     tangential_damping: float = 0.0,
     errors: OnError = "raise",
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Any:
     """Coefficients of tangential restitution; a number if all parameters are numbers.
 
     The parameters are those of `collide` and broadcast. errors: "raise", or "nan" for a NaN where a
     collision has no result. threads: 1 to 1024, or None for one for each core; results do not
-    depend on it.
+    depend on it. progress: called now and then with the number of collisions that are done and of
+    all; True shows a bar on stderr.
 
     >>> eps_t([18.0, 63.0], 0.5)
     array([-0.08488447, -0.04165221])
@@ -642,6 +644,7 @@ def eps_t(
         tangential_damping=tangential_damping,
         errors=errors,
         threads=threads,
+        progress=progress,
     )[0][()]
 
 
@@ -660,6 +663,7 @@ def eps_t_and_switch_count(
     tangential_damping: float = 0.0,
     errors: OnError = "raise",
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> tuple[Floats, NDArray[np.int32]]:
     """Coefficients of tangential restitution and numbers of switches, as arrays.
 
@@ -668,8 +672,9 @@ def eps_t_and_switch_count(
     psi, law, tangential_damping = _rubbing(psi, ratio, mu, alpha, (law, tangential_damping))
     _, flat, shape = _broadcast(kappa, psi, damping)
     engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
-    with keeping(lambda left: left[:2]):
-        found, counts, _ = _native.eps_t(flat, engine, chosen, _strict(errors), _threads(threads))
+    job = (flat, engine, chosen, _strict(errors), _threads(threads))
+    with keeping(lambda left: left[:2]), reported(progress, "eps_t") as report:
+        found, counts, _ = _native.eps_t(*job, report)
     return found.reshape(shape), counts.reshape(shape)
 
 
@@ -688,6 +693,7 @@ def collide_many(
     tangential_damping: float = 0.0,
     errors: OnError = "raise",
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Collisions:
     """Collisions of arrays of parameters, with every switch of each.
 
@@ -709,6 +715,7 @@ def collide_many(
         kappa, psi, damping = (one if one.size == 1 else one[: shape[0]] for one in flat)
         return Collisions((kappa, psi, damping), (*engine, *chosen), left, shape)
 
-    with keeping(first):
-        columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))
+    job = (flat, engine, chosen, _strict(errors), _threads(threads))
+    with keeping(first), reported(progress, "collide_many") as report:
+        columns = _native.collide_many(*job, report)
     return Collisions(given, (*engine, *chosen), columns, shape)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _solution_pictures
+from stickslip._progress import Progress, reporting
 from stickslip._shown import Shown, html_table
 from stickslip._tabular import Columns, Tabular, flat
 
@@ -62,7 +64,9 @@ class Sensitivities(Tabular, Shown):
         return _solution_pictures.sensitivities(self, ax, line)
 
 
-def sensitivities_of(system: FormulaSystem, by: tuple[str, ...], rerun: Rerun) -> Sensitivities:
+def sensitivities_of(
+    system: FormulaSystem, by: tuple[str, ...], rerun: Rerun, progress: Progress | None
+) -> Sensitivities:
     """The derivatives of a run of a system."""
     parameters, components = list(system.parameters), system.components
     places = []
@@ -74,7 +78,8 @@ def sensitivities_of(system: FormulaSystem, by: tuple[str, ...], rerun: Rerun) -
         else:
             known = ", ".join([*parameters, *components])
             raise ValueError(f"{name!r} is no parameter and no component; expected some of {known}")
-    found = system._native.sensitivities(places, *rerun)
+    run = partial(system._native.sensitivities, places, *rerun)
+    found = reporting(progress, "sensitivities", run)
     labels = [rules for _, rules in system._native.modes()]
     count, n = found["t"].size, len(components)
     events = [labels[mode][rule] for mode, rule in found["rules"]]

@@ -310,7 +310,7 @@ class HybridFamily:
                 try:
                     system = self._recorded.system._native
                     given = (None, None, None)
-                    found = system.run(list(values), given, self._end, self._settings, [])
+                    found = system.run(list(values), given, self._end, self._settings, np.empty(0), False)
                 except (ValueError, _native.ComputationError):
                     continue
                 self._recorded.compare(found, values)
@@ -401,15 +401,22 @@ class HybridFamily:
         return found
 
     def labels(
-        self, x: ArrayLike, y: ArrayLike, *, threads: int | None = None
+        self,
+        x: ArrayLike,
+        y: ArrayLike,
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
     ) -> NDArray[np.object_]:
         """What runs do: an array of `Itinerary`. x and y broadcast.
 
-        threads: as in `trace_family`.
+        threads: as in `trace_family`. progress: called now and then with the number of runs that
+        are done and of all; True shows a bar on stderr.
         """
         (x, y), shape = _pairs(x, y)
         self._compare(x, y)
-        found = self._native.labels(x, y, _threads(threads))
+        with reported(progress, "labels") as report:
+            found = self._native.labels(x, y, _threads(threads), report)
         return _objects([_label(one, self.guards) for one in found], shape)
 
     def margins(self, x: float, y: float) -> tuple[tuple[FamilyMargin, float], ...]:

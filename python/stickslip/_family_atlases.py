@@ -293,14 +293,23 @@ class FamilyAtlas(Plane[_native.FamilyAtlas]):
         )
 
     def decide(
-        self, family: HybridFamily, x: ArrayLike, y: ArrayLike, *, threads: int | None = None
+        self,
+        family: HybridFamily,
+        x: ArrayLike,
+        y: ArrayLike,
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
     ) -> NDArray[np.object_]:
         """The itinerary at every point: by a run of the family within the error of a curve or of
         the window's edge, and in regions in doubt. None outside the window. x and y broadcast.
+        threads, progress: as in `HybridFamily.labels`.
         """
         (x, y), shape = _pairs(x, y)
         family._compare(x, y)
-        found = family._in(self.window).decide(self._native, x, y, _threads(threads))
+        own = family._in(self.window)
+        with reported(progress, "decide") as report:
+            found = own.decide(self._native, x, y, _threads(threads), report)
         return _objects([one and _label(one, family.guards) for one in found], shape)
 
     def _lines(self) -> Iterator[tuple[str, Floats]]:
@@ -314,6 +323,10 @@ class FamilyAtlas(Plane[_native.FamilyAtlas]):
             count = _count_events(region.itinerary)
             text = "?" if region.doubtful or count < 0 else str(count)
             yield text, region.area / whole, region.sample
+
+    def _counts(self, x: Floats, y: Floats) -> Floats:
+        found = self.locate(x, y)
+        return np.where(found.doubtful | (found.event_count < 0), np.nan, found.event_count)
 
     def _frame(self) -> dict[str, Any]:
         (xlim, ylim), (x, y) = self.window, self.axes

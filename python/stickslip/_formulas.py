@@ -23,7 +23,7 @@ from stickslip._orbit_regions import OrbitRegions
 from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
-from stickslip._solutions import Beside, Names, Solution
+from stickslip._solutions import Beside, Names, Solution, note_interruption
 from stickslip._collisions import _threads
 from stickslip._studies import Study, _study
 
@@ -130,13 +130,13 @@ class FormulaSystem:
         values, given, end, settings = rerun
         start = given[1]
         low, high = (-np.inf if start is None else start, np.inf if end is None else end)
-        times = None if t_eval is None else times_within(t_eval, low, high).tolist()
+        times = None if t_eval is None else times_within(t_eval, low, high)
         def until_now(found: dict[str, Any]) -> Solution:
-            found["message"] = f"Stopped at t = {found['end_time']!r} by Ctrl-C."
+            note_interruption(found)
             return self._solution(found, bool(dense_output), rerun)
 
         with keeping(until_now):
-            run = partial(self._native.run, values, given, end, settings, times)
+            run = partial(self._native.run, values, given, end, settings, times, bool(dense_output))
             found = reporting(progress, "solve", run)
         return self._solution(found, bool(dense_output), rerun)
 
@@ -154,6 +154,7 @@ class FormulaSystem:
         first_step: float | None = None,
         max_switches: int = 10_000_000,
         max_steps: int = MOST_STEPS,
+        progress: Progress | None = None,
     ) -> Sensitivities:
         """Runs the system together with derivatives by parameters, and by values of components at
         the start, through every event. The rest is as in `solve`.
@@ -179,7 +180,7 @@ class FormulaSystem:
         steps, most = (max_step, first_step), (max_switches, max_steps)
         begin = (t_span, y0, mode)
         rerun = self._arguments(begin, parameters, method, (rtol, atol), steps, most)
-        return sensitivities_of(self, by, rerun)
+        return sensitivities_of(self, by, rerun, progress)
 
     def orbit(
         self,
@@ -192,6 +193,7 @@ class FormulaSystem:
         settle: float | None = None,
         near: Orbit | None = None,
         parameters: Mapping[str, float] | None = None,
+        progress: Progress | None = None,
     ) -> Orbit:
         """The periodic orbit near a guess, its multipliers, and whether the system follows it.
 
@@ -199,7 +201,8 @@ class FormulaSystem:
         the system if they are not given) these rules act one after another, others are not looked
         at, and the search goes on from there; durations of the segments may be given instead.
         settle: a run of this time from the start settles to the orbit. near: an orbit at other
-        parameters, with the same itinerary. One of itinerary, settle and near is needed.
+        parameters, with the same itinerary. One of itinerary, settle and near is needed. progress:
+        of settling, as in `stickslip.solve`.
 
         States are accurate to about 1e-12 of their size, multipliers to 1e-11 of the largest one.
         Raises ValueError if a name or a value is wrong, ComputationError if there is no orbit.
@@ -221,7 +224,7 @@ class FormulaSystem:
         (2.197224577336, True, True)
         """
         return _orbits.orbit(
-            self, itinerary, (start, mode, time), durations, settle, near, parameters
+            self, itinerary, (start, mode, time), durations, settle, near, parameters, progress
         )
 
     def branch(
@@ -232,12 +235,14 @@ class FormulaSystem:
         *,
         longest_step: float = 0.05,
         most_points: int = 2000,
+        progress: Progress | None = None,
     ) -> Branch:
         """The branch of an orbit over an interval of a parameter, in both directions, through folds
         and grazes. Orbits that the system does not follow are kept and marked.
 
         longest_step: along the branch, of the size of what changes. most_points: in either
-        direction. Special orbits are located to about 1e-11 of the interval.
+        direction. Special orbits are located to about 1e-11 of the interval. progress: called now
+        and then with the number of points, twice; True shows a bar on stderr.
 
         Raises ValueError if a name or a value is wrong, ComputationError if the branch does not
         begin. Where it breaks off later, `objection` says why.
@@ -261,7 +266,8 @@ class FormulaSystem:
         >>> [(it.kind, round(it.value, 10)) for it in branch.specials if it.kind == "flip"]
         [('flip', 0.029654967)]
         """
-        return _orbits.branch(self, orbit, parameter, interval, longest_step, most_points)
+        steps = (longest_step, most_points)
+        return _orbits.branch(self, orbit, parameter, interval, steps, progress)
 
     def resumed(
         self,
@@ -270,13 +276,15 @@ class FormulaSystem:
         *,
         longest_step: float = 0.05,
         most_points: int = 2000,
+        progress: Progress | None = None,
     ) -> Branch:
         """A branch that goes on from both of its ends, over an interval that contains its own, or
         from where it broke off. What it has stays as it is.
 
         Raises ValueError if a value is wrong, or if the branch is closed.
         """
-        return _orbits.resumed(self, branch, interval, longest_step, most_points)
+        steps = (longest_step, most_points)
+        return _orbits.resumed(self, branch, interval, steps, progress)
 
     def read_branch(self, path: str | Path) -> Branch:
         """The branch in a JSON file that `Branch.save` or the program has written. Its orbits are
@@ -295,6 +303,7 @@ class FormulaSystem:
         y: tuple[float, float],
         *,
         longest_step: float = 0.05,
+        progress: Progress | None = None,
     ) -> SpecialCurve:
         """The curve of a special orbit of a branch over two parameters, in the window of the
         intervals x and y, in both directions. `meetings` are orbits at which something else changes
@@ -304,7 +313,7 @@ class FormulaSystem:
         boundary,
         and ComputationError if the curve does not begin.
         """
-        return _orbits.curve(self, special, parameters, x, y, longest_step)
+        return _orbits.curve(self, special, parameters, (x, y), longest_step, progress)
 
     def orbit_regions(
         self,
@@ -314,6 +323,7 @@ class FormulaSystem:
         y: tuple[float, float],
         *,
         cells: int = 5,
+        progress: Progress | None = None,
     ) -> OrbitRegions:
         """Where orbits of the itinerary of an orbit exist and are stable over two parameters, in
         the window of the intervals x and y. Each region says which orbits the system follows there,
@@ -342,7 +352,7 @@ class FormulaSystem:
         >>> found.objection, found.at(0.011, 0.7), found.at(0.02, 0.7)
         (None, (), (0,))
         """
-        return _orbit_regions.regions(self, orbit, parameters, x, y, cells)
+        return _orbit_regions.regions(self, orbit, parameters, (x, y), cells, progress)
 
     def switched(self, branch: Branch, special: SpecialOrbit, *, aside: float = 0.05) -> Orbit:
         """The orbit on the branch that begins or passes at a special orbit of a branch: of twice
@@ -365,6 +375,7 @@ class FormulaSystem:
         mode: str | None = None,
         begin: float | None = None,
         parameters: Mapping[str, float] | None = None,
+        progress: Progress | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The Poincaré map of a rule as data: times, shape (n,), and states before the rule acts,
         shape (components, n), in the time behind `skip`.
@@ -385,7 +396,8 @@ class FormulaSystem:
         >>> t.tolist(), x.tolist()
         ([1.0, 2.0, 3.0], [0.375, 0.5625, 0.65625])
         """
-        return _attractors.section(self, rule, (skip, time), (start, mode, begin), parameters)
+        begins = (start, mode, begin)
+        return _attractors.section(self, rule, (skip, time), begins, parameters, progress)
 
     def diagram(
         self,
@@ -399,13 +411,15 @@ class FormulaSystem:
         mode: str | None = None,
         begin: float | None = None,
         parameters: Mapping[str, float] | None = None,
+        progress: Progress | None = None,
     ) -> Diagram:
         """A bifurcation diagram by brute force: `section` over values of a parameter, upwards and
         downwards. Each run goes on where the last one ended, so that the two differ where there are
         several attractors. The rest is as in `section`.
         """
         begins, span = (start, mode, begin), (skip, time)
-        return _attractors.diagram(self, (parameter, values), rule, span, begins, parameters)
+        over = (parameter, values)
+        return _attractors.diagram(self, over, rule, span, begins, parameters, progress)
 
     def exponents(
         self,
@@ -416,6 +430,7 @@ class FormulaSystem:
         mode: str | None = None,
         begin: float | None = None,
         parameters: Mapping[str, float] | None = None,
+        progress: Progress | None = None,
     ) -> Exponents:
         """The Lyapunov exponents of a run through its events, in the time behind `skip`. One is 0
         where time is not explicit. The rest is as in `section`.
@@ -425,7 +440,8 @@ class FormulaSystem:
         >>> decay.exponents(time=20).values.round(9).tolist()
         [-2.0]
         """
-        return _attractors.exponents(self, (skip, time), (start, mode, begin), parameters)
+        begins = (start, mode, begin)
+        return _attractors.exponents(self, (skip, time), begins, parameters, progress)
 
     def basins(
         self,
@@ -438,13 +454,14 @@ class FormulaSystem:
         mode: str | None = None,
         begin: float | None = None,
         parameters: Mapping[str, float] | None = None,
+        progress: Progress | None = None,
     ) -> Basins:
         """Where runs from a grid of values of two components lead in the time `settle`, told apart:
         periodic orbits, states that do not change, rules that end runs. Attractors that differ by
         less than 1e-3 of their size are one. The rest is as in `section`.
         """
         begins = (start, mode, begin)
-        return _attractors.basins(self, components, x, y, settle, begins, parameters)
+        return _attractors.basins(self, components, (x, y), settle, begins, parameters, progress)
 
     @cached_property
     def _orbits(self) -> _native.OrbitSystem:

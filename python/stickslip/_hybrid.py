@@ -193,8 +193,7 @@ def _try_recorded(job: _Job, report: Report | None) -> tuple[Solution | None, st
     try:
         names, values = list(job.given), list(job.given.values())
         recorded = Recorded(job.table, (first, start), job.state, names, values)
-        wanted = None if job.times is None else job.times.tolist()
-        return recorded.solve(job.begin, job.settings, wanted, job.dense, report), ""
+        return recorded.solve(job.begin, job.settings, job.times, job.dense, report), ""
     except (CannotRecord, _native.ComputationError) as reason:
         return None, str(reason)
 

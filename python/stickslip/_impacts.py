@@ -17,7 +17,7 @@ from stickslip import _laws, _native, _pictures
 from stickslip._arrays import numbers
 from stickslip._axes import svg
 from stickslip._laws import Law
-from stickslip._progress import keeping
+from stickslip._progress import Progress, keeping, reported
 from stickslip._tabular import Columns, Tabular
 from stickslip._collisions import Collisions, Floats, Method, OnError, _strict, _threads
 
@@ -419,6 +419,7 @@ def impact(
     errors: OnError = "raise",
     threads: int | None = None,
     law: Law | None = None,
+    progress: Progress | None = None,
 ) -> Impacts:
     """Impacts of two bodies for arrays of velocities, which broadcast.
 
@@ -491,8 +492,8 @@ def impact(
         count = found[0]["eps_t"].size
         return made(found, (flat[0][:count], flat[1][:count]), (count,))
 
-    with keeping(done):
-        found = pair._pair.impacts(flat, engine, _strict(errors), count)
+    with keeping(done), reported(progress, "impact") as report:
+        found = pair._pair.impacts(flat, engine, _strict(errors), count, report)
     return made(found, (normal, tangential), shape)
 
 

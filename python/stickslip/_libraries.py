@@ -6,13 +6,12 @@ import importlib
 from typing import Any
 
 
-def library(name: str, extra: str, purpose: str) -> Any:
+def library(name: str, purpose: str) -> Any:
     """The module `name`, or an error that says what installs it."""
     try:
         return importlib.import_module(name)
     except ImportError:
         package = name.partition(".")[0]
         raise ImportError(
-            f'{package} is not installed, and needed {purpose}: pip install "stickslip[{extra}]", '
-            f"or pip install {package}"
+            f"{package} is not installed, and needed {purpose}: pip install {package}"
         ) from None

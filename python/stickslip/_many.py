@@ -13,6 +13,7 @@ from stickslip import _native
 from stickslip._arrays import real
 from stickslip._blocks import Chunks, aligned, block_shape
 from stickslip._compiled import Function
+from stickslip._libraries import library
 from stickslip._recorded import Recorded
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._symbols import CannotRecord
@@ -91,6 +92,7 @@ def solve_many(
     >>> bool(np.allclose(found.end_state.sel(component="y0"), np.exp([-1.0, -2.0])))
     True
     """
+    library("xarray", "for solve_many")
     import xarray as xr
 
     given = dict(parameters or {})
@@ -265,6 +267,7 @@ class _Runs:
         threads: int | None,
     ) -> Dataset:
         """The same without events, on Dask. A task holds only its part of each array."""
+        library("dask.array", "for chunks")
         import dask.array as da
         import xarray as xr
 
@@ -362,7 +365,8 @@ def _compare(recorded: Recorded, rows: Any, states: Any, runs: _Runs) -> None:
             recorded.compare_start(values)
             begin = (None, runs.begin[1], state)
             native = recorded.system._native
-            found = native.run(list(values), begin, runs.end, runs.settings, [])
+            nothing = np.empty(0)
+            found = native.run(list(values), begin, runs.end, runs.settings, nothing, False)
             recorded.compare(found, values)
         except CannotRecord as reason:
             raise ValueError(f"many runs are those of formulas, but {reason}") from None

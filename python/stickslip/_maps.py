@@ -9,6 +9,8 @@ import numpy as np
 
 from stickslip import _laws
 from stickslip._laws import Law
+from stickslip._libraries import library
+from stickslip._progress import Progress
 from stickslip._collisions import (
     Floats,
     Method,
@@ -64,6 +66,7 @@ def map(
     tangential_damping: float = 0.0,
     errors: OnError = "nan",
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Dataset:
     """eps_t and switch_count on a grid, at the points where `stickslip map` has them.
 
@@ -72,6 +75,7 @@ def map(
     (ratio, kappa) with psi as a further coordinate. The other arguments are those of `eps_t`; a law is
     an attribute of the result.
     """
+    library("xarray", "for map")
     import xarray as xr
 
     if (psi is None) == (ratio is None):
@@ -95,7 +99,7 @@ def map(
     found, counts = eps_t_and_switch_count(
         across[None, :], up[:, None], damping, method,
         rtol=rtol, atol=atol, law=law, tangential_damping=tangential_damping,
-        errors=errors, threads=threads,
+        errors=errors, threads=threads, progress=progress,
     )  # fmt: skip
     dimensions = (row, "kappa")
     return xr.Dataset(

@@ -30,6 +30,7 @@ def eps_t(
     law: _Law,
     strict: bool,
     threads: int,
+    progress: _Report | None = None,
 ) -> tuple[_Floats, NDArray[np.int32], list[tuple[int, str]]]: ...
 def collide_many(
     parameters: tuple[_Floats, _Floats, _Floats],
@@ -37,6 +38,7 @@ def collide_many(
     law: _Law,
     strict: bool,
     threads: int,
+    progress: _Report | None = None,
 ) -> dict[str, Any]: ...
 
 @final
@@ -102,6 +104,7 @@ class FormulaSystem:
         start: tuple[int | None, float | None, list[float] | None],
         end: float | None,
         settings: dict[str, Any],
+        progress: _Report | None,
     ) -> dict[str, Any]: ...
     def starts(self, parameters: _Floats) -> list[float]: ...
     def run(
@@ -110,7 +113,8 @@ class FormulaSystem:
         start: tuple[int | None, float | None, list[float] | None],
         end: float | None,
         settings: dict[str, Any],
-        times: list[float] | None,
+        times: _Floats | None,
+        dense: bool,
         progress: _Report | None = None,
     ) -> dict[str, Any]: ...
     def converge(
@@ -138,6 +142,7 @@ class OrbitSystem:
         parameters: list[float],
         start: tuple[int | None, float | None, list[float] | None],
         time: float,
+        progress: _Report | None,
     ) -> str: ...
     def continued(self, orbit: str, parameters: list[float]) -> str: ...
     def switched(self, special: str, beside: str, parameter: int, aside: float) -> str: ...
@@ -148,6 +153,7 @@ class OrbitSystem:
         range: tuple[float, float],
         longest_step: float,
         most_points: int,
+        progress: _Report | None,
     ) -> str: ...
     def read_branch(self, text: str) -> str: ...
     def resumed(
@@ -156,6 +162,7 @@ class OrbitSystem:
         range: tuple[float, float],
         longest_step: float,
         most_points: int,
+        progress: _Report | None,
     ) -> str: ...
     def curve(
         self,
@@ -163,9 +170,15 @@ class OrbitSystem:
         parameters: list[int],
         window: list[list[float]],
         longest_step: float,
+        progress: _Report | None,
     ) -> str: ...
     def regions(
-        self, orbit: str, parameters: list[int], window: list[list[float]], cells: int
+        self,
+        orbit: str,
+        parameters: list[int],
+        window: list[list[float]],
+        cells: int,
+        progress: _Report | None,
     ) -> OrbitMap: ...
     def section(
         self,
@@ -173,6 +186,7 @@ class OrbitSystem:
         start: tuple[int | None, float | None, list[float] | None],
         rule: str,
         span: tuple[float, float],
+        progress: _Report | None,
     ) -> list[tuple[float, list[float]]]: ...
     def diagram(
         self,
@@ -181,12 +195,14 @@ class OrbitSystem:
         over: tuple[int, list[float]],
         rule: str,
         span: tuple[float, float],
+        progress: _Report | None,
     ) -> list[list[tuple[float, list[tuple[float, list[float]]], str | None]]]: ...
     def exponents(
         self,
         parameters: list[float],
         start: tuple[int | None, float | None, list[float] | None],
         span: tuple[float, float],
+        progress: _Report | None,
     ) -> tuple[list[float], float, int]: ...
     def basins(
         self,
@@ -195,6 +211,7 @@ class OrbitSystem:
         components: list[int],
         values: tuple[list[float], list[float]],
         time: float,
+        progress: _Report | None,
     ) -> tuple[list[str], list[int]]: ...
     def course(self, orbit: str, parts: int) -> list[tuple[float, list[float]]]: ...
 
@@ -255,7 +272,12 @@ class BodyPair:
         self, normal: _Floats, tangential: _Floats
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
     def impacts(
-        self, velocities: tuple[_Floats, _Floats], engine: _Engine, strict: bool, threads: int
+        self,
+        velocities: tuple[_Floats, _Floats],
+        engine: _Engine,
+        strict: bool,
+        threads: int,
+        progress: _Report | None,
     ) -> tuple[dict[str, Any], _Floats]: ...
     def encounter(self, motion: _Motion, other: _Motion, engine: _Engine) -> str: ...
 
@@ -315,9 +337,20 @@ class HybridFamily:
     def resume(
         self, atlas: FamilyAtlas, threads: int, callbacks: _Calls
     ) -> tuple[FamilyAtlas, BaseException | None]: ...
-    def labels(self, x: _Floats, y: _Floats, threads: int) -> list[_Label]: ...
+    def labels(
+        self,
+        x: _Floats,
+        y: _Floats,
+        threads: int,
+        progress: _Report | None,
+    ) -> list[_Label]: ...
     def decide(
-        self, atlas: FamilyAtlas, x: _Floats, y: _Floats, threads: int
+        self,
+        atlas: FamilyAtlas,
+        x: _Floats,
+        y: _Floats,
+        threads: int,
+        progress: _Report | None,
     ) -> list[_Label | None]: ...
     def margins(self, x: float, y: float) -> tuple[_Label, list[_MarginFields]]: ...
     def follow(
@@ -477,6 +510,9 @@ def reproduction_parts() -> list[str]: ...
 def reproduce(
     part: int, cells: int, threads: int, progress: _Report | None = None
 ) -> dict[str, Any]: ...
+def reproduce_all(
+    directory: os.PathLike[str], cells: int, threads: int, progress: _Report | None = None
+) -> str | None: ...
 def run_hybrid(
     system: tuple[list[Any], list[Any], tuple[Any, Any]],
     args: tuple[Any, ...],

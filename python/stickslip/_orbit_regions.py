@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import _native
+from stickslip import _native, _orbit_pictures
 from stickslip._compiled import _number
 from stickslip._orbits import _parameter
+from stickslip._progress import Progress, reported
 from stickslip._shown import Shown
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from stickslip._formulas import FormulaSystem
     from stickslip._orbits import Orbit
 
@@ -87,6 +90,11 @@ class OrbitRegions(Shown):
         """Writes the regions to a JSON file, which `read_orbit_regions` reads."""
         Path(path).write_text(self._text, encoding="utf-8")
 
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the boundaries, and whether a stable orbit is followed in each region. `line` is
+        for matplotlib."""
+        return _orbit_pictures.regions(self, ax, line)
+
     def svg(self, *, title: str = "orbits that the system follows") -> str:
         """The picture of the regions."""
         return self._map.svg(title)
@@ -115,16 +123,18 @@ def regions(
     system: FormulaSystem,
     orbit: Orbit,
     parameters: tuple[str, str],
-    x: tuple[float, float],
-    y: tuple[float, float],
+    intervals: tuple[tuple[float, float], tuple[float, float]],
     cells: int,
+    progress: Progress | None,
 ) -> OrbitRegions:
     """See `FormulaSystem.orbit_regions`."""
     places = [_parameter(system, name) for name in parameters]
-    window = [[_number(end, "interval") for end in interval] for interval in (x, y)]
+    window = [[_number(end, "interval") for end in interval] for interval in intervals]
     if cells < 1:
         raise ValueError(f"cells = {cells!r}; expected 1 to 100")
-    return _of(system._orbits.regions(json.dumps(orbit._record), places, window, cells))
+    with reported(progress, "orbit_regions") as report:
+        found = system._orbits.regions(json.dumps(orbit._record), places, window, cells, report)
+    return _of(found)
 
 
 def _of(native: _native.OrbitMap) -> OrbitRegions:

@@ -5,18 +5,23 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _native, _orbit_pictures
+from stickslip._axes import Panels, svg
 from stickslip._compiled import _number
+from stickslip._progress import Progress, reported, reporting
 from stickslip._run_arguments import state_at_start
 from stickslip._shown import Shown
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from stickslip._formulas import FormulaSystem
 
 
@@ -63,6 +68,14 @@ class Orbit(Shown):
         """The orbit with names, as the program writes it."""
         return dict(self._record)
 
+    def plot(self, ax: Panels = None, **line: Any) -> list[Axes]:
+        """Draws the first six components over one period: in new axes below each other, in axes for
+        each, or in one. `line` is for matplotlib."""
+        return _orbit_pictures.orbit(self, ax, line)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot, min(len(self._system.components), _orbit_pictures.MOST_PANELS))
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SpecialOrbit(Shown):
@@ -98,6 +111,13 @@ class SpecialCurve(Shown):
         """The values of both parameters, shape (2, n)."""
         rows = [[point.parameters[name] for point in self.points] for name in self.parameters]
         return np.array(rows)
+
+    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the curve in the plane of both parameters. `line` is for matplotlib."""
+        return _orbit_pictures.curve(self, ax, line)
+
+    def _repr_svg_(self) -> str | None:
+        return svg(self.plot)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -135,6 +155,11 @@ class Branch(Shown):
         """A component of the states at the ends of a segment."""
         place = self._place(component)
         return np.array([point.segments[segment].end[place] for point in self.points])
+
+    def plot(self, ax: Axes | None = None, *, component: str | None = None, **line: Any) -> Axes:
+        """Draws a component at the end of the first segment over the parameter. `line` is for
+        matplotlib."""
+        return _orbit_pictures.branch(self, ax, component, line)
 
     def svg(self, component: str | None = None, *, title: str = "periodic orbits") -> str:
         """The picture of the branch: a component at the end of the first segment."""
@@ -187,6 +212,7 @@ def orbit(
     settle: float | None,
     near: Orbit | None,
     parameters: Mapping[str, float] | None,
+    progress: Progress | None,
 ) -> Orbit:
     """See `FormulaSystem.orbit`."""
     given = [name for name, it in _ways(itinerary, settle, near) if it is not None]
@@ -199,7 +225,8 @@ def orbit(
         return _read(system, json.loads(found)["orbit"])
     values, first = system.values(parameters), first_of(system, begin)
     if settle is not None:
-        found = system._orbits.settled(values, first, _number(settle, "settle"))
+        run = partial(system._orbits.settled, values, first, _number(settle, "settle"))
+        found = reporting(progress, "orbit", run)
     else:
         if isinstance(itinerary, str) or itinerary is None:
             raise ValueError(f"itinerary = {itinerary!r}; expected a list of names of rules")
@@ -219,17 +246,14 @@ def branch(
     orbit: Orbit,
     parameter: str,
     interval: tuple[float, float],
-    longest_step: float,
-    most_points: int,
+    steps: tuple[float, int],
+    progress: Progress | None,
 ) -> Branch:
     """See `FormulaSystem.branch`."""
-    text = system._orbits.branch(
-        json.dumps(orbit._record),
-        _parameter(system, parameter),
-        _ends(interval),
-        _number(longest_step, "longest_step"),
-        most_points,
-    )
+    begin = (json.dumps(orbit._record), _parameter(system, parameter), _ends(interval))
+    step = _number(steps[0], "longest_step")
+    with reported(progress, "branch") as report:
+        text = system._orbits.branch(*begin, step, steps[1], report)
     return _read_branch(system, text)
 
 
@@ -237,12 +261,13 @@ def resumed(
     system: FormulaSystem,
     branch: Branch,
     interval: tuple[float, float],
-    longest_step: float,
-    most_points: int,
+    steps: tuple[float, int],
+    progress: Progress | None,
 ) -> Branch:
     """See `FormulaSystem.resumed`."""
-    step = _number(longest_step, "longest_step")
-    text = system._orbits.resumed(branch._text, _ends(interval), step, most_points)
+    step = _number(steps[0], "longest_step")
+    with reported(progress, "branch") as report:
+        text = system._orbits.resumed(branch._text, _ends(interval), step, steps[1], report)
     return _read_branch(system, text)
 
 
@@ -288,15 +313,16 @@ def curve(
     system: FormulaSystem,
     special: SpecialOrbit,
     parameters: tuple[str, str],
-    x: tuple[float, float],
-    y: tuple[float, float],
+    intervals: tuple[tuple[float, float], tuple[float, float]],
     longest_step: float,
+    progress: Progress | None,
 ) -> SpecialCurve:
     """See `FormulaSystem.curve`."""
     places = [_parameter(system, name) for name in parameters]
-    window = [[_number(end, "interval") for end in interval] for interval in (x, y)]
+    window = [[_number(end, "interval") for end in interval] for interval in intervals]
     step = _number(longest_step, "longest_step")
-    text = system._orbits.curve(json.dumps(special._record), places, window, step)
+    with reported(progress, "curve") as report:
+        text = system._orbits.curve(json.dumps(special._record), places, window, step, report)
     found = json.loads(text)
     return SpecialCurve(
         kind=found["kind"],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip._axes import DASHES, MARKERS, Panels, legend, one, panels, scale
+from stickslip._axes import DASHES, MARKERS, Panels, cells, legend, one, panels, scale
 from stickslip.style import COLOURS, INK, PHASES, RULE, diverging, growing
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ _AXES = {
     "normal_m_per_s": "normal velocity in m/s",
     "tangential_m_per_s": "tangential velocity in m/s",
 }
-#: Columns and rows of a map of a table.
-_CELLS = 300
 
 
 def collision(found: Collision, ax: Panels, line: dict[str, Any]) -> list[Axes]:
@@ -172,7 +170,7 @@ def table(
 ) -> Axes:
     """The restitution as colours over both axes of a table, with the boundaries of its regions."""
     ax = one(ax)
-    across, up = (_between(*ends) for _, ends in (x, y))
+    across, up = (cells(*ends) for _, ends in (x, y))
     eps_t = found.eps_t(across, up[:, None], threads=None)
     style = _around_zero(eps_t) | options
     drawn = ax.pcolormesh(across, up, eps_t, shading="nearest", rasterized=True, **style)
@@ -183,14 +181,6 @@ def table(
             ax.contour(across, up, regions == number, [0.5], colors=INK, linewidths=0.6)
     ax.set(xlabel=_AXES[x[0]], ylabel=_AXES[y[0]], xscale=scale(across), yscale=scale(up))
     return ax
-
-
-def _between(low: float, high: float) -> NDArray[np.float64]:
-    """The centres of cells, in the scale of an axis."""
-    parts = (np.arange(_CELLS) + 0.5) / _CELLS
-    if scale([low, high]) == "log":
-        return np.asarray(low * (high / low) ** parts)
-    return low + (high - low) * parts
 
 
 def gaining(found: GainingLines, ax: Axes | None, line: dict[str, Any]) -> Axes:

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 from stickslip import _atlas_results, _native
-from stickslip._axes import one
+from stickslip._axes import cells, one
 from stickslip._tabular import Columns, Tabular
 from stickslip._collisions import Floats
-from stickslip.style import BOUNDARIES, PLACES
+from stickslip.style import BOUNDARIES, PLACES, growing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,17 +80,34 @@ class Plane(Tabular, Generic[Native]):
         """The label of each region, its part of the window, and a point inside."""
         raise NotImplementedError
 
+    def _counts(self, x: Floats, y: Floats) -> Floats:
+        """The numbers of events at points, which broadcast; NaN where there is none."""
+        raise NotImplementedError
+
     def _frame(self) -> dict[str, Any]:
         """Limits, scales and names of the axes."""
         raise NotImplementedError
 
-    def plot(self, ax: Axes | None = None, *, labels: bool = True, **line: Any) -> Axes:
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        labels: bool = True,
+        colours: bool = True,
+        **line: Any,
+    ) -> Axes:
         """Draws the boundaries with matplotlib, and the number of events in large regions.
 
-        ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
-        properties of all lines, e.g. `linewidth`.
+        ax: axes to draw in, or None for new ones. labels: whether regions are labelled. colours:
+        whether they are coloured by the number of events. line: properties of all lines, e.g.
+        `linewidth`.
         """
         ax = one(ax)
+        frame = self._frame()
+        if colours:
+            x, y = cells(*frame["xlim"]), cells(*frame["ylim"])
+            style: dict[str, Any] = {"cmap": growing(), "alpha": 0.5, "zorder": 0}
+            ax.pcolormesh(x, y, self._counts(x, y[:, None]), shading="nearest", rasterized=True, **style)
         named = set()
         for kind, points in self._lines():
             name = None if kind in named else kind
@@ -99,7 +116,7 @@ class Plane(Tabular, Generic[Native]):
         for text, part, sample in self._labels() if labels else ():
             if part > self._ROOM:
                 ax.annotate(text, sample, ha="center", va="center")
-        ax.set(**self._frame())
+        ax.set(**frame)
         return ax
 
     def _columns(self) -> Columns:

@@ -13,14 +13,19 @@ from numpy.typing import NDArray
 
 from stickslip._compiled import Compiled, Function
 from stickslip._derivatives import Rerun
-from stickslip._progress import Report
+from stickslip._progress import Report, keeping
 from stickslip._recording import Tape
-from stickslip._solutions import Beside, DenseOutput, Solution, with_variables
+from stickslip._solutions import (
+    Beside,
+    Solution,
+    note_interruption,
+    with_variables,
+)
 from stickslip._symbols import CannotRecord, Symbol, Symbols, array_of
 from stickslip._systems import Guard, Mode, _Clock, _Source
 from stickslip._formulas import FormulaSystem
 
-#: Places between steps, and events, at which formulas are compared with their functions.
+#: Events at which formulas are compared with their functions.
 MOST_PLACES = 8
 
 
@@ -312,7 +317,7 @@ class Recorded:
         self,
         begin: tuple[int, float, float],
         settings: dict[str, Any],
-        times: list[float] | None,
+        times: NDArray[np.float64] | None,
         dense: bool,
         report: Report | None,
     ) -> Solution:
@@ -322,9 +327,22 @@ class Recorded:
         settings = {name: value for name, value in settings.items() if name != "guard_scale"}
         given = (first, start, self.state.tolist() + self.table.variables.flat.tolist())
         values = self.values or []
-        found = self.system._native.run(values, given, end, settings, times, report)
-        self.compare(found, tuple(values))
         rerun: Rerun = (values, given, end, settings)
+
+        def until_now(found: dict[str, Any]) -> Solution | None:
+            try:
+                self.compare(found, tuple(values))
+            except CannotRecord:
+                return None
+            note_interruption(found)
+            return self._solution(found, dense, rerun)
+
+        with keeping(until_now):
+            found = self.system._native.run(*rerun, times, dense, report)
+        self.compare(found, tuple(values))
+        return self._solution(found, dense, rerun)
+
+    def _solution(self, found: dict[str, Any], dense: bool, rerun: Rerun) -> Solution:
         beside = with_variables(found, self.table.variables)
         names = replace(self.system._names, events=self.table.event_names)
         if self.surfaces:
@@ -359,15 +377,8 @@ class Recorded:
     def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that are not what their functions return with values of parameters."""
         self.compare_start(values)
-        dense = DenseOutput(found, np.array(self.table.names), self.start)
-        starts, sizes, modes = found["starts"], found["sizes"], found["segment_modes"] // self.width
-        # In order, and each once (`unique` imports masked arrays).
-        chosen = np.linspace(0, starts.size - 1, MOST_PLACES).astype(int)
-        chosen = chosen[np.diff(chosen, prepend=-1) > 0][: starts.size]
-        # An irrational part of a step is at no event.
-        times = starts[chosen] + 0.61803 * sizes[chosen]
-        for t, mode, y in zip(times.tolist(), modes[chosen].tolist(), dense(times).T, strict=True):
-            self.compare_at(mode, t, y, values)
+        for t, mode, y in found["samples"]:
+            self.compare_at(mode // self.width, t, np.array(y), values)
         n = self.state.size
         before = found["event_before"].reshape(-1, n + len(self.held))
         after = found["event_after"].reshape(-1, n + len(self.held))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -32,8 +33,8 @@ def span(t_span: ArrayLike) -> tuple[float, float]:
     span = _reals(t_span, "t_span")
     if span.shape != (2,):
         raise ValueError(f"t_span has shape {span.shape}; expected (start, end)")
-    start, end = map(float, span)
-    if not np.isfinite(start) or np.isnan(end):
+    start, end = span.tolist()
+    if not math.isfinite(start) or math.isnan(end):
         raise ValueError(f"t_span = ({start}, {end}); expected a finite start and an end")
     return start, end
 

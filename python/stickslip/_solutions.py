@@ -16,6 +16,7 @@ from stickslip._axes import Panels, svg
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._libraries import library
 from stickslip._names import Named
+from stickslip._progress import Progress
 from stickslip._tabular import Columns as Table
 from stickslip._tabular import Tabular, flat
 
@@ -129,7 +130,7 @@ class Solution(Tabular):
         again: tuple[FormulaSystem, Rerun] | None = None,
     ) -> None:
         if not dense:
-            for name in ("starts", "sizes", "coefficients", "segment_modes"):
+            for name in ("starts", "sizes", "coefficients", "segment_modes", "samples"):
                 found.pop(name, None)
         self.__dict__.update(
             _found=found,
@@ -309,7 +310,7 @@ class Solution(Tabular):
         """The formulas that have run: those of a text, or those of recorded functions."""
         return None if self._again is None else self._again[0]
 
-    def sensitivities(self, *by: str) -> Sensitivities:
+    def sensitivities(self, *by: str, progress: Progress | None = None) -> Sensitivities:
         """Derivatives of events and of the end by parameters, and by components at the start (y0,
         y1, … of functions), by a run with derivatives. See `FormulaSystem.sensitivities`.
 
@@ -326,7 +327,7 @@ class Solution(Tabular):
                 f"{self.guards}"
             )
         system, rerun = self._again
-        return sensitivities_of(system, by, rerun)
+        return sensitivities_of(system, by, rerun, progress)
 
     def plot(
         self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
@@ -367,7 +368,7 @@ class Solution(Tabular):
 
         Raises ImportError if xarray is not installed.
         """
-        xr = library("xarray", "xarray", "for to_xarray")
+        xr = library("xarray", "for to_xarray")
         rest = {name: one for name, one in self._columns().items() if name not in self._components}
         time = rest.pop("time")
         variables = {name: ("time", one) for name, one in rest.items()}
@@ -381,7 +382,7 @@ class Solution(Tabular):
         if self._again is None or self.nfev > most_calls:
             return None
         system, (values, given, end, settings) = self._again
-        found = system._native.run(values, given, end, settings, [])
+        found = system._native.run(values, given, end, settings, np.empty(0), True)
         return DenseOutput(found, np.array(system.modes), found["start_time"])
 
     def _repr_svg_(self) -> str | None:
@@ -455,6 +456,11 @@ def variable_columns(variables: Named) -> list[Any]:
     """The column of events for variables, if there are any."""
     shapes = variables.shapes.items()
     return [("variables", [(name, "f8", shape) for name, shape in shapes])] if variables else []
+
+
+def note_interruption(found: dict[str, Any]) -> None:
+    """Says why a run has ended early."""
+    found["message"] = f"Stopped at t = {found['end_time']!r} by Ctrl-C."
 
 
 def with_variables(found: dict[str, Any], variables: Named | None) -> Beside | None:

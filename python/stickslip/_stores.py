@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from stickslip import _native
 from stickslip._blocks import QUANTITIES, SCHEMA, Engine, Plan, aligned
+from stickslip._libraries import library
 from stickslip._collisions import (
     OnError,
     eps_t_and_switch_count,
@@ -87,7 +88,7 @@ def create_store(
     path: Path, plan: Plan, engine: Engine, block: tuple[int, ...], build: dict[str, str]
 ) -> None:
     """Makes the store without results; it appears whole or not at all."""
-    import zarr
+    zarr = library("zarr", "for write_sweep")
     from zarr.storage import LocalStore
 
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _native, _study_pictures
+from stickslip._atlases import AtlasWarning
 from stickslip._shown import Shown, html_table
 from stickslip._tabular import Tabular
 from stickslip._progress import Progress, reported
@@ -191,57 +192,56 @@ def reproduction_parts() -> list[str]:
 
 
 @overload
-def reproduce(part: int | str, *, cells: int = 200, threads: int | None = None) -> Study: ...
-@overload
-def reproduce(part: Path, *, cells: int = 200, threads: int | None = None) -> Path: ...
 def reproduce(
-    part: int | str | Path, *, cells: int = 200, threads: int | None = None
+    part: int | str,
+    *,
+    cells: int = 200,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Study: ...
+@overload
+def reproduce(
+    part: Path,
+    *,
+    cells: int = 200,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Path: ...
+def reproduce(
+    part: int | str | Path,
+    *,
+    cells: int = 200,
+    threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Study | Path:
     """A part of the paper, computed anew, or all of them on one page.
 
     part: its title, or its index in `reproduction_parts()`; or the `Path` of a directory, which
     gets the files of all parts and a page, whose path is the result. cells: columns and rows of
-    maps.
+    maps. progress: as in `asymptote`. If anything speaks against the page, it says so in an
+    AtlasWarning.
     """
     titles = _native.reproduction_parts()
     if isinstance(part, Path):
-        studies = []
-        for index in range(len(titles)):
-            studies.append(reproduce(index, cells=cells, threads=threads))
-            studies[-1].save(part)
-        page = part / "index.html"
-        page.write_text(_page(studies), encoding="utf-8")
-        return page
+        with reported(progress, "reproduce") as report:
+            objection = _native.reproduce_all(part, _cells(cells), _threads(threads), report)
+        if objection is not None:
+            warnings.warn(f"the page may be wrong: {objection}", AtlasWarning, stacklevel=2)
+        return part / "index.html"
     if isinstance(part, str):
         if part not in titles:
             raise ValueError(f"part = {part!r}; expected one of {titles}")
         part = titles.index(part)
     if not 0 <= part < len(titles):
         raise ValueError(f"part = {part}; expected 0 to {len(titles) - 1}")
+    with reported(progress, titles[part]) as report:
+        return _study(_native.reproduce(part, _cells(cells), _threads(threads), report))
+
+
+def _cells(cells: int) -> int:
     if not 1 <= cells <= 100_000:
         raise ValueError(f"cells = {cells}; expected 1 to 100000")
-    return _study(_native.reproduce(part, cells, _threads(threads)))
-
-
-def _page(studies: Sequence[Study]) -> str:
-    """All studies on one page, with their pictures in it."""
-    parts = []
-    for study in studies:
-        against = "".join(f"<p><b>Objection:</b> {escape(one)}</p>" for one in study.objections)
-        findings = "".join(f"<li>{escape(one)}</li>" for one in study.findings)
-        pictures = "".join(
-            f"<figure>{svg}<figcaption>{escape(study.captions[name])}</figcaption></figure>"
-            for name, svg in study.pictures.items()
-        )
-        title = f"<h2 id={study.name!r}>{escape(study.title)}</h2>"
-        parts.append(f"{title}{against}<ul>{findings}</ul>{pictures}")
-    links = "".join(f"<li><a href='#{one.name}'>{escape(one.title)}</a></li>" for one in studies)
-    return (
-        "<!DOCTYPE html><html lang='en'><meta charset='utf-8'>"
-        "<title>The paper computed anew</title>"
-        "<style>body{max-width:60em;margin:auto;font-family:sans-serif}svg{max-width:100%}</style>"
-        f"<h1>The paper computed anew</h1><ol>{links}</ol>{''.join(parts)}</html>\n"
-    )
+    return cells
 
 
 def _study(found: dict[str, Any]) -> Study:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from stickslip import _laws, _stores
 from stickslip._blocks import QUANTITIES, Chunks, Engine, Parameter, Plan, Quantity, aligned
 from stickslip._laws import Law
+from stickslip._libraries import library
 from stickslip._progress import Progress, check, reported
 from stickslip._collisions import (
     Floats,
@@ -81,6 +82,7 @@ def sweep(
     >>> int(found.switch_count.sel(kappa=63, psi=0.5))
     6
     """
+    library("xarray", "for sweep")
     import xarray as xr
 
     engine = Engine.of(
@@ -169,6 +171,7 @@ def write_sweep(
 
 def _lazy(plan: Plan, engine: Engine, block: tuple[int, ...], threads: int) -> dict[str, Any]:
     """Dask arrays of the quantities. A task holds only its part of each parameter."""
+    library("dask.array", "for chunks")
     import dask.array as da
 
     most = dict(zip(plan.dims, block, strict=True))

@@ -37,14 +37,14 @@ class Tabular:
 
         Raises ImportError if pandas is not installed.
         """
-        return library("pandas", "pandas", "for to_pandas").DataFrame(self._columns())
+        return library("pandas", "for to_pandas").DataFrame(self._columns())
 
     def to_xarray(self) -> Dataset:
         """A `xarray.Dataset` with the columns, their meanings and their units.
 
         Raises ImportError if xarray is not installed.
         """
-        xr = library("xarray", "xarray", "for to_xarray")
+        xr = library("xarray", "for to_xarray")
         meanings = self._meanings()
         columns = self._columns().items()
         found: Dataset = xr.Dataset(
@@ -57,12 +57,12 @@ class Tabular:
 
         Raises ImportError if pyarrow is not installed.
         """
-        write_parquet(library("pyarrow", "arrow", "for to_parquet").table(self._columns()), path)
+        write_parquet(library("pyarrow", "for to_parquet").table(self._columns()), path)
 
 
 def write_parquet(table: Any, path: str | os.PathLike[str]) -> None:
     """Writes a `pyarrow.Table`, complete or not at all."""
-    parquet = library("pyarrow.parquet", "arrow", "for to_parquet")
+    parquet = library("pyarrow.parquet", "for to_parquet")
     file = Path(path)
     beside = file.with_name(f".{file.name}.{os.getpid()}.part")
     try:

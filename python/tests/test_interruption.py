@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 import stickslip
+from results import BALL, family, of, table
 
 ORBITS = Path(__file__).parents[2] / "examples" / "orbits"
+MANY = 60_000_000
 OSCILLATOR = "state x = 1\nstate v = 0\nx' = v\nv' = -1e6*x\nend = {}"
 
 
@@ -46,6 +48,19 @@ LONG: dict[str, Callable[[], object]] = {
         ("x", "v"), np.linspace(-2, 2, 300), np.linspace(-2, 2, 300), settle=3000
     ),
     "regions": oscillator_regions,
+    "history": lambda: stickslip.collide(63, 0.5).history(np.linspace(0, 3, MANY)),
+    "eps_n": lambda: of("VelocityTable").eps_n(np.linspace(1, 2, MANY)),
+    "locate": lambda: of("FamilyAtlas").locate(np.linspace(0.5, 2, MANY), 0.6),
+    "labels": lambda: stickslip.HybridFamily.of(
+        stickslip.system(f"parameter a = 1, b = 0\n{OSCILLATOR.format(3)}"), "a", "b"
+    ).labels(np.linspace(1, 2, 3000), 1.0),
+    "times": lambda: stickslip.system("state x = 1\nx' = -x\nend = 1").solve(
+        t_eval=np.linspace(0, 1, MANY)
+    ),
+    "times of functions": lambda: stickslip.solve(
+        lambda t, y: -y, (0, 1), [1.0], t_eval=np.linspace(0, 1, MANY), record=False
+    ),
+    "dense output": lambda: of("Solution").sol(np.linspace(0, 2.6, MANY)),
     "solve_many": lambda: stickslip.solve_many(
         stickslip.system(OSCILLATOR.format(1000)), initial={"x": np.linspace(1, 2, 1000)}
     ),
@@ -101,6 +116,11 @@ def test_ctrl_c_keeps_what_is_done() -> None:
     assert found.shape == counts.shape and 0 < found.size < kappa.size
     solution = interrupted(lambda: stickslip.system(OSCILLATOR.format(1e6)).solve())
     assert 0 < solution.t[-1] < 1e6 and "by Ctrl-C" in solution.message
+    # Recorded functions too.
+    swing = lambda t, y: [y[1], -1e6 * y[0]]  # noqa: E731
+    solution = interrupted(lambda: stickslip.solve(swing, (0, 1e6), [1, 0]))
+    assert 0 < solution.t[-1] < 1e6 and "by Ctrl-C" in solution.message
+    assert abs(solution.y[0, -1] - np.cos(1e3 * solution.t[-1])) < 1e-4
     steel = stickslip.Material(210e9, 0.3, 7850.0)
     pair = stickslip.Bodies(
         stickslip.Sphere(0.02, steel), stickslip.Wall(), stickslip.Surface(0.4, 1e12, 1e-7)
@@ -118,15 +138,43 @@ def test_long_calls_report_their_progress() -> None:
         call(progress=lambda done, steps: found.append((done, steps)))
         return found
 
+    kappa, bouncing = np.linspace(3, 9, 1000), table()
+    orbit = bouncing.orbit(itinerary=["period", "bounce"])
+    recorded = stickslip.solve(lambda t, y: -y, (0.0, 1.0), [1.0])
     calls: list[Callable[..., object]] = [
         lambda progress: stickslip.trace((5, 8), (0.8, 1.2), progress=progress),
         lambda progress: stickslip.table((1, 2), (0.5, 1.5), bound=1e-5, progress=progress),
         lambda progress: stickslip.timestep(3.0, 0.4, steps=[20, 100], progress=progress),
         lambda progress: stickslip.asymptote((10, 100), [1.0], progress=progress),
+        lambda progress: stickslip.reproduce(0, cells=5, progress=progress),
+        lambda progress: stickslip.eps_t(kappa, 1.0, progress=progress),
+        lambda progress: stickslip.collide_many(kappa, 1.0, progress=progress),
+        lambda progress: stickslip.map((1, 2), (1, 2), (9, 9), progress=progress),
+        lambda progress: stickslip.impact(of("Bodies"), kappa, 0.5, progress=progress),
+        lambda progress: family().labels(kappa / 6, 0.6, progress=progress),
+        lambda progress: stickslip.system(BALL).sensitivities("restitution", progress=progress),
+        lambda progress: recorded.sensitivities("y0", progress=progress),
+        lambda progress: bouncing.orbit(settle=100.0, progress=progress),
+        lambda progress: bouncing.branch(orbit, "a", (0.02, 0.021), progress=progress),
+        lambda progress: bouncing.resumed(of("Branch"), (0.018, 0.035), progress=progress),
+        lambda progress: bouncing.curve(
+            of("SpecialOrbit"), ("r", "a"), (0.69, 0.7), (0.01, 0.06), progress=progress
+        ),
+        lambda progress: bouncing.orbit_regions(
+            orbit, ("a", "r"), (0.01, 0.03), (0.65, 0.75), cells=1, progress=progress
+        ),
+        lambda progress: bouncing.section("bounce", time=9.0, progress=progress),
+        lambda progress: bouncing.diagram(
+            "a", [0.02, 0.021], "bounce", time=9.0, progress=progress
+        ),
+        lambda progress: bouncing.exponents(time=9.0, progress=progress),
+        lambda progress: bouncing.basins(
+            ("x", "v"), [0.015, 0.02], [0.5], settle=100.0, progress=progress
+        ),
     ]
     for call in calls:
-        *_, (done, steps) = reports(call)
-        assert 0 < done <= steps
+        told = reports(call)
+        assert told == sorted(told) and 0 < told[-1][0] <= told[-1][1]
 
 
 def test_an_exception_of_progress_ends_the_call() -> None:

@@ -1,7 +1,7 @@
 """Studies and maps."""
 
-import html
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -85,14 +85,17 @@ def test_maps() -> None:
             stickslip.map(**arguments)  # type: ignore[arg-type]
 
 
-def test_all_parts_are_on_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    titles = stickslip.reproduction_parts()[:2]
-    monkeypatch.setattr(stickslip._native, "reproduction_parts", lambda: titles)
-    page = stickslip.reproduce(tmp_path / "out", cells=20)
-    assert page == tmp_path / "out/index.html"
+def test_all_parts_are_on_one_page(tmp_path: Path) -> None:
+    told = []
+    with warnings.catch_warnings():
+        # Maps of twenty cells are too coarse for some statements.
+        warnings.simplefilter("ignore", stickslip.AtlasWarning)
+        page = stickslip.reproduce(
+            tmp_path / "out", cells=20, progress=lambda done, steps, doing="": told.append(done)
+        )
+    assert page == tmp_path / "out/index.html" and told[-1] == 11
     text = page.read_text()
-    for index, title in enumerate(titles):
-        study = stickslip.reproduce(index, cells=20)
-        assert title in text and all(html.escape(one) in text for one in study.findings)
-        assert all((tmp_path / f"out/{name}.svg").exists() for name in study.pictures)
-    assert text.count("<svg") >= 2
+    titles = stickslip.reproduction_parts()
+    assert all(title in text for title in titles) and text.count("<svg") >= len(titles)
+    study = stickslip.reproduce(0, cells=20)
+    assert all((tmp_path / f"out/{name}.svg").exists() for name in study.pictures)

@@ -19,7 +19,7 @@ mod man;
 mod map;
 mod orbit;
 mod regions;
-mod reproduce;
+pub mod reproduce;
 mod run;
 mod section;
 mod stack;

@@ -26,6 +26,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 
 use commands::Arguments;
+pub use commands::reproduce::write_everything;
 pub use error::Failure;
 use output::console::say;
 pub use stickslip_files::FileError;

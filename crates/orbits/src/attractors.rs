@@ -5,8 +5,6 @@ mod basins;
 mod exponents;
 mod section;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 pub use basins::{Attractor, Basins};
 pub use exponents::Exponents;
 pub use section::{Column, Section, SectionPoint};
@@ -15,17 +13,18 @@ use stickslip_solver::dynamic::{DynamicEvent, DynamicObserver, DynamicSwitch};
 use stickslip_solver::{InvalidValue, Options, Outcome, Rest};
 
 use crate::error::OrbitError;
+use crate::watch::Watched;
 
 /// The events of a run, and where they accumulate. The run ends if nobody waits for it.
 struct Switches<'a> {
     events: Vec<DynamicSwitch<usize>>,
     rest: Option<f64>,
-    stop: &'a AtomicBool,
+    watched: Watched<'a>,
 }
 
-impl<'a> Switches<'a> {
-    fn until(stop: &'a AtomicBool) -> Self {
-        Self { events: Vec::new(), rest: None, stop }
+impl<'a> From<Watched<'a>> for Switches<'a> {
+    fn from(watched: Watched<'a>) -> Self {
+        Self { events: Vec::new(), rest: None, watched }
     }
 }
 
@@ -39,8 +38,8 @@ impl DynamicObserver<usize> for Switches<'_> {
     fn forget(&mut self, switches: usize) {
         self.events.truncate(self.events.len().saturating_sub(switches));
     }
-    fn stops(&self, _: f64) -> bool {
-        self.stop.load(Ordering::Relaxed)
+    fn stops(&self, s: f64) -> bool {
+        self.watched.stops(s)
     }
 }
 

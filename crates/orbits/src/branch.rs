@@ -339,6 +339,7 @@ impl Orbits {
                 break;
             }
             half.points.push(next.orbit.clone());
+            self.watch.count();
             match steps.rest(&next.orbit) {
                 Some(Rest::Endless(segment)) => {
                     let (behind, kind) = (half.points.len() + 1, SpecialKind::InfinitePeriod);

@@ -1,7 +1,6 @@
 //! Orbits from a guess, and from an orbit at other parameters.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use stickslip_expression::{Compiled, InvalidValue, Rule, Runnable, System, Trigger};
 use stickslip_solver::{EmbeddedPair, GivenValue, Options, Outcome};
@@ -13,6 +12,7 @@ use crate::itinerary::{Leg, modes_after, require_short, rules_named};
 use crate::multipliers::multipliers;
 use crate::newton::correct;
 use crate::orbit::{Orbit, Segment, Verdict};
+use crate::watch::OrbitWatch;
 
 /// Steps of the search for the events of a guess.
 const GUESS_STEPS: usize = 100_000;
@@ -28,8 +28,8 @@ pub struct Orbits {
     pub(crate) halfway: Halfway,
     /// The accuracy of flows and runs.
     pub(crate) options: Options,
-    /// Whether nobody waits for what is searched for.
-    pub(crate) stop: Arc<AtomicBool>,
+    /// How far what is searched for is, and whether anybody waits for it.
+    pub(crate) watch: Arc<OrbitWatch>,
 }
 
 /// Where an orbit is searched for.
@@ -66,20 +66,26 @@ impl Orbits {
         InvalidValue::check("the system", found, expected, accepted)?;
         let options = Options { max_steps: 1_000_000, ..Options::with_tolerance(1e-13) };
         let halfway = Halfway::new(system, &compiled)?;
-        let stop = Arc::default();
-        Ok(Self { system: system.clone(), compiled, halfway, options, stop })
+        let watch = Arc::default();
+        Ok(Self { system: system.clone(), compiled, halfway, options, watch })
     }
 
-    /// The same orbits. What is searched for ends soon, with [`OrbitError::Stopped`] or incomplete,
-    /// once the flag is set.
+    /// The same orbits, which say how far they are. What is searched for ends soon, with
+    /// [`OrbitError::Stopped`] or incomplete, once the watch is stopped.
     #[must_use]
-    pub fn until(&self, stop: Arc<AtomicBool>) -> Self {
-        Self { stop, ..self.clone() }
+    pub fn watched(&self, watch: Arc<OrbitWatch>) -> Self {
+        Self { watch, ..self.clone() }
+    }
+
+    /// How far what is searched for is.
+    #[must_use]
+    pub fn watch(&self) -> Arc<OrbitWatch> {
+        Arc::clone(&self.watch)
     }
 
     /// Refuses to go on if nobody waits.
     pub(crate) fn require_wanted(&self) -> Result<(), OrbitError> {
-        if self.stop.load(Ordering::Relaxed) { Err(OrbitError::Stopped) } else { Ok(()) }
+        if self.watch.is_stopped() { Err(OrbitError::Stopped) } else { Ok(()) }
     }
 
     /// The system.

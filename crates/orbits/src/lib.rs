@@ -96,7 +96,8 @@
 //! `equations` has the equations of an orbit with a prescribed itinerary; `newton` solves them by
 //! the tracer's one search for points; `multipliers` and `admissible` judge what was found; `find`
 //! and `settle` have the ways to an orbit, `branch` follows it, `regions` makes an atlas of it,
-//! `attractors` looks at runs that need not settle, and `document` writes orbits.
+//! `attractors` looks at runs that need not settle, `watch` says how far work is, and `document`
+//! writes orbits.
 
 mod admissible;
 mod attractors;
@@ -112,6 +113,7 @@ mod newton;
 mod orbit;
 mod regions;
 mod settle;
+mod watch;
 
 pub use attractors::{Attractor, Basins, Column, Exponents, Section, SectionPoint};
 pub use branch::curve::{Meeting, SpecialCurve};
@@ -122,6 +124,7 @@ pub use itinerary::Leg;
 pub use orbit::{Obstacle, Orbit, Segment, Verdict};
 pub use regions::{FollowedOrbits, OrbitAtlas, OrbitBoundary, OrbitNames, RegionOptions};
 pub use stickslip_expression::InvalidValue;
+pub use watch::OrbitWatch;
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

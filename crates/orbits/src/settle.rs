@@ -1,7 +1,5 @@
 //! Orbits from a run that settles: its last events repeat.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use stickslip_expression::{InvalidValue, Runnable, Trigger};
 use stickslip_solver::dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, run_dynamic_with,
@@ -14,6 +12,7 @@ use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::itinerary::Leg;
 use crate::orbit::Orbit;
+use crate::watch::Watched;
 
 /// So many events of a run are looked at for one that repeats.
 const MOST_EVENTS: usize = 400;
@@ -31,15 +30,15 @@ pub(crate) struct Settling {
 }
 
 /// What is seen of a run.
-struct Watch<'a> {
+struct Seen<'a> {
     events: Vec<DynamicSwitch<usize>>,
     sizes: [Vec<f64>; 2],
     /// The middle of the time.
     middle: f64,
-    stop: &'a AtomicBool,
+    watched: Watched<'a>,
 }
 
-impl Watch<'_> {
+impl Seen<'_> {
     fn see(&mut self, s: f64, state: &[f64]) {
         let [whole, late] = &mut self.sizes;
         enlarge(whole, state);
@@ -49,14 +48,14 @@ impl Watch<'_> {
     }
 }
 
-impl DynamicObserver<usize> for Watch<'_> {
+impl DynamicObserver<usize> for Seen<'_> {
     const WANTS_SEGMENTS: bool = true;
 
     fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
         self.events.push(event.to_switch());
     }
-    fn stops(&self, _: f64) -> bool {
-        self.stop.load(Ordering::Relaxed)
+    fn stops(&self, s: f64) -> bool {
+        self.watched.stops(s)
     }
     fn on_segment(&mut self, _: usize, dense: &DynamicDense<'_>) {
         self.see(dense.start(), dense.coefficients());
@@ -80,7 +79,9 @@ impl Orbits {
     ) -> Result<Orbit, OrbitError> {
         let runnable = self.start(parameters, guess)?;
         require_time("the time to settle", time)?;
-        let found = self.settling(&runnable, time, &self.options);
+        let start = runnable.start().s;
+        let watched = Watched::over(&self.watch, [start, start + time]);
+        let found = self.settling(&runnable, time, &self.options, watched);
         let found = found.map_err(|error| OrbitError::Run { segment: 0, error })?;
         self.require_wanted()?;
         let draft = self.repeated(parameters, &found);
@@ -123,14 +124,15 @@ impl Orbits {
         runnable: &Runnable,
         time: f64,
         options: &Options,
+        watched: Watched<'_>,
     ) -> Result<Settling, RunError> {
         let start = runnable.start();
         let sizes = [0, 1].map(|_| vec![0.0; start.state.len()]);
         let (events, middle) = (Vec::new(), start.s + 0.5 * time);
-        let mut watch = Watch { events, sizes, middle, stop: &self.stop };
+        let mut seen = Seen { events, sizes, middle, watched };
         let (pair, end) = (EmbeddedPair::Dop853, start.s + time);
-        let run = run_dynamic_with(pair, runnable, start, end, options, &mut watch)?;
-        let Watch { events: mut last, sizes, .. } = watch;
+        let run = run_dynamic_with(pair, runnable, start, end, options, &mut seen)?;
+        let Seen { events: mut last, sizes, .. } = seen;
         let acts = |event: &DynamicSwitch<usize>| {
             let rule = &self.system.modes[event.from].rules[event.guard];
             !is_note(rule) || matches!(rule.trigger, Trigger::Every { .. })

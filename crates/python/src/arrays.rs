@@ -83,7 +83,7 @@ impl<'py> Pairs<'py> {
         let mut written = values.readwrite();
         let mut columns = [const { Vec::new() }; 2];
         let written_values = written.as_slice_mut()?;
-        in_pieces(py, self.count(), |piece| {
+        in_pieces(py, self.count(), None, |piece| {
             // Other threads may write to the arrays, so that pieces are copied. The same memory
             // again and again is quicker than much new one.
             for (column, array) in columns.iter_mut().zip(&self.0) {
@@ -178,6 +178,7 @@ fn refuse(points: &Points, strict: bool, failures: &Failures) -> PyResult<()> {
 /// ε_t and the number of switches of each collision; NaN and −1 where there is none, and the
 /// numbers and reasons of those.
 #[pyfunction]
+#[pyo3(signature = (parameters, engine, law, strict, threads, progress=None))]
 pub fn eps_t<'py>(
     py: Python<'py>,
     parameters: Parameters<'py>,
@@ -185,6 +186,7 @@ pub fn eps_t<'py>(
     law: LawChoice,
     strict: bool,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
     let points = Points::new(&parameters, &law)?;
     let engine = engine.engine(points.law)?;
@@ -207,7 +209,7 @@ pub fn eps_t<'py>(
         });
         (results, failed)
     };
-    let threads = Threads::new(threads, points.count)?;
+    let threads = Threads::new(threads, points.count)?.telling(progress);
     let ended = threads.each(py, points.count, work, |(results, failed)| {
         refuse(&points, strict, &failed)?;
         failures.extend(failed);
@@ -361,6 +363,7 @@ impl Columns {
 /// All results of each collision as a dictionary of arrays; switches lie one after another, those
 /// of collision i from `offsets[i]` up to `offsets[i + 1]`.
 #[pyfunction]
+#[pyo3(signature = (parameters, engine, law, strict, threads, progress=None))]
 pub fn collide_many<'py>(
     py: Python<'py>,
     parameters: Parameters<'py>,
@@ -368,12 +371,14 @@ pub fn collide_many<'py>(
     law: LawChoice,
     strict: bool,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let points = Points::new(&parameters, &law)?;
     let engine = engine.engine(points.law)?;
     let mut columns = Columns::default();
     let work = |part| Columns::of(&points, engine, part);
-    let ended = Threads::new(threads, points.count)?.each(py, points.count, work, |part| {
+    let threads = Threads::new(threads, points.count)?.telling(progress);
+    let ended = threads.each(py, points.count, work, |part| {
         refuse(&points, strict, &part.failures)?;
         columns.append(part);
         Ok(())

@@ -3,12 +3,13 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use pyo3::prelude::*;
+use stickslip_orbits::OrbitWatch;
 use stickslip_plane::progress::{Progress, Report};
 
 use crate::failure::failed;
@@ -71,11 +72,9 @@ impl Signals {
 /// How far the work is, and whether nobody waits for it any more.
 #[derive(Default)]
 struct State {
-    done: AtomicUsize,
-    steps: AtomicUsize,
+    watch: Arc<OrbitWatch>,
     /// What is done now, in words.
     doing: Mutex<&'static str>,
-    abandoned: Arc<AtomicBool>,
 }
 
 /// With this the threads of abandoned work unwind.
@@ -85,14 +84,11 @@ impl State {
     /// Takes a report of the work. It does not return if the work is abandoned.
     fn take(&self, progress: Progress) {
         match progress {
-            Progress::Begin { steps } => self.steps.fetch_add(steps, Ordering::Relaxed),
-            Progress::Advance { steps } => self.done.fetch_add(steps, Ordering::Relaxed),
-            Progress::Now { what } => {
-                *lock(&self.doing) = what;
-                0
-            }
-        };
-        if self.abandoned.load(Ordering::Relaxed) {
+            Progress::Begin { steps } => self.watch.begin(steps),
+            Progress::Advance { steps } => self.watch.advance(steps),
+            Progress::Now { what } => *lock(&self.doing) = what,
+        }
+        if self.watch.is_stopped() {
             resume_unwind(Box::new(Abandoned));
         }
     }
@@ -100,8 +96,7 @@ impl State {
     /// Calls `function` with the steps that are done and with all that have begun.
     fn tell(&self, py: Python<'_>, function: Option<&Py<PyAny>>) -> PyResult<()> {
         let Some(function) = function else { return Ok(()) };
-        let [done, steps] = [&self.done, &self.steps].map(|count| count.load(Ordering::Relaxed));
-        tell(py, function, (done, steps), *lock(&self.doing))
+        tell(py, function, self.watch.progress(), *lock(&self.doing))
     }
 }
 
@@ -134,12 +129,12 @@ pub fn watched<T: Send + 'static>(
     abandonable(py, threads, progress, |report, _| work(report))
 }
 
-/// As [`watched`], for work that looks itself at the flag which is set once nobody waits for it.
+/// As [`watched`], for work that looks itself whether anybody waits for it.
 pub fn abandonable<T: Send + 'static>(
     py: Python<'_>,
     threads: usize,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(Report<'_>, &Arc<AtomicBool>) -> T + Send + 'static,
+    work: impl FnOnce(Report<'_>, &Arc<OrbitWatch>) -> T + Send + 'static,
 ) -> PyResult<T> {
     let pool = Threads::pool(threads)?;
     let state = Arc::new(State::default());
@@ -147,8 +142,7 @@ pub fn abandonable<T: Send + 'static>(
     let theirs = Arc::clone(&state);
     let thread = move || {
         let report = |progress| theirs.take(progress);
-        let made =
-            catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&report, &theirs.abandoned))));
+        let made = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&report, &theirs.watch))));
         // Nobody waits any more if the work is abandoned.
         let _ = sender.send(made);
     };
@@ -165,7 +159,7 @@ pub fn abandonable<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) => {
                 let looked = py.check_signals().and_then(|()| state.tell(py, progress));
                 if let Err(error) = looked {
-                    state.abandoned.store(true, Ordering::Relaxed);
+                    state.watch.stop();
                     return Err(error);
                 }
             }

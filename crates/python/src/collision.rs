@@ -1,5 +1,6 @@
 //! One collision.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -13,11 +14,14 @@ use stickslip_model::document::COLLISION;
 use stickslip_model::history::{History, Snapshot};
 use stickslip_model::sensitivity::Derived;
 use stickslip_model::{Collider, Contact, Engine};
+use stickslip_plane::progress::{Progress, Report};
 use stickslip_solver::Statistics;
 
 use crate::arrays::numbers;
+use crate::background::watched;
 use crate::engines::{Choice, LawChoice, document};
 use crate::failure::{Failure, bad_input};
+use crate::parallel::Threads;
 
 /// A collision with what computed it.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -83,7 +87,14 @@ impl Collision {
                     let moment = history.at(within).map(|moment| Snapshot { time, ..moment });
                     moment.map_or(outside(time), |moment| row(&moment))
                 };
-                times.into_iter().map(at).collect()
+                let part =
+                    |part: Range<usize>| times[part].iter().copied().map(at).collect::<Vec<_>>();
+                let mut rows = Vec::with_capacity(times.len());
+                Threads::new(1, times.len())?.each(py, times.len(), part, |part| {
+                    rows.extend(part);
+                    Ok(())
+                })?;
+                rows
             }
             None => history
                 .phases()
@@ -91,8 +102,7 @@ impl Collision {
                 .collect(),
         };
         let count = rows.len();
-        let flat: Vec<f64> = rows.into_iter().flatten().collect();
-        flat.into_pyarray(py).reshape([count, 8])
+        rows.into_flattened().into_pyarray(py).reshape([count, 8])
     }
 
     /// Derivatives of ε_n, ε_t, w, the contact time and the times of switches: a row for each, with
@@ -117,8 +127,13 @@ impl Collision {
         let unwritten = |error: FileError| PyOSError::new_err(error.to_string());
         file.probe().map_err(unwritten)?;
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
-        let frames = pictures::collision::frames(&self.result, &history);
-        py.detach(|| publish([file.write(frames)?])).map_err(unwritten)
+        let collision = self.result.clone();
+        let work = move |report: Report<'_>| {
+            let frames = pictures::collision::frames(&collision, &history);
+            // Abandoned work ends between two pictures.
+            publish([file.write(frames.inspect(|_| report(Progress::Advance { steps: 0 })))?])
+        };
+        watched(py, 1, None, work)?.map_err(unwritten)
     }
 }
 

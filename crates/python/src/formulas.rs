@@ -2,20 +2,21 @@
 
 use std::sync::OnceLock;
 
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Compiled, Recording, Runnable, SensitivityError, System};
-use stickslip_plane::progress::{Progress, Report};
-use stickslip_solver::dynamic::DynamicSwitch;
+use stickslip_solver::dynamic::{DynamicSegment, DynamicSwitch};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
 use stickslip_figure::pictures::studies as pictures;
 use stickslip_studies::{StudyError, own_system};
 
-use crate::background::{Signals, watched};
+use crate::arrays::numbers;
+use crate::background::Signals;
 use crate::failure::{bad_input, failed, keeping};
+use crate::parallel::in_pieces;
 use crate::studies;
 
 /// A parameter: its name, its value and its range.
@@ -129,6 +130,7 @@ impl FormulaSystem {
     /// Runs the system with derivatives by parameters and by values of components at the start:
     /// times and states of events and of the end, the derivatives of times, shape (places, by), and
     /// those of states, shape (places, by, components); and rules and modes of the events.
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn sensitivities<'py>(
         &self,
         py: Python<'py>,
@@ -137,8 +139,10 @@ impl FormulaSystem {
         start: Start,
         end: Option<f64>,
         settings: Settings,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (method, options) = settings.checked()?;
+        let (runnable, last) = self.started(&parameters, start.clone(), end)?;
         let by: Vec<By> = by
             .into_iter()
             .map(|(start, place)| if start { By::Start(place) } else { By::Parameter(place) })
@@ -150,27 +154,19 @@ impl FormulaSystem {
             system.start = Some(system.graph.constant(s));
         }
         if let Some(state) = state {
-            if state.len() != system.components.len() {
-                return Err(bad_input("the state has another number of components"));
-            }
             for (component, value) in system.components.iter_mut().zip(state) {
                 component.start = system.graph.constant(value);
             }
         }
-        if end.is_none() && system.end.is_none() && !system.ends_itself() {
-            return Err(bad_input(
-                "the system has no end and no rule that ends it; expected t_span",
-            ));
-        }
-        let work = move |report: Report<'_>| {
-            // Abandoned work unwinds here.
-            let stops = |_| {
-                report(Progress::Advance { steps: 0 });
-                false
-            };
+        let signals = Signals::new(progress, [runnable.start().s, last]);
+        let stops = |s| signals.stop(s);
+        let found = py.detach(|| {
             system.sensitivities_unless(&stops, &by, &parameters, method, end, &options)
-        };
-        let found = watched(py, 1, None, work)?.map_err(|error| match error {
+        });
+        if let Some(interrupted) = signals.raised() {
+            return Err(interrupted);
+        }
+        let found = found.map_err(|error| match error {
             SensitivityError::Parameters(error) => bad_input(error),
             error => failed(error),
         })?;
@@ -200,8 +196,9 @@ impl FormulaSystem {
         Ok(states)
     }
 
-    /// Runs the system, and returns what it found as columns.
-    #[pyo3(signature = (parameters, start, end, settings, times, progress=None))]
+    /// Runs the system, and returns what it found as columns, with the coefficients of dense output
+    /// if it is wanted.
+    #[pyo3(signature = (parameters, start, end, settings, times, dense, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn run<'py>(
         &self,
@@ -210,11 +207,13 @@ impl FormulaSystem {
         start: Start,
         end: Option<f64>,
         settings: Settings,
-        times: Option<Vec<f64>>,
+        times: Option<PyReadonlyArray1<'py, f64>>,
+        dense: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let (method, options) = settings.checked()?;
+        let times = times.map(|times| numbers(&times)).transpose()?;
         let runnable = runnable.with_tolerances(settings.tolerances).map_err(bad_input)?;
         let signals = Signals::new(progress, [runnable.start().s, end]);
         let stops = |s| signals.stop(s);
@@ -224,7 +223,7 @@ impl FormulaSystem {
             (Err(_), Some(interrupted)) => return Err(interrupted),
             (Err(error), None) => return Err(failed(self.system.explained(&error))),
         };
-        let columns = columns(py, &self.system, &found, times)?;
+        let columns = columns(py, &self.system, &found, times, dense)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
         let work = found.run.statistics.field + stages * found.steps().len() + 1;
@@ -312,9 +311,13 @@ fn columns<'py>(
     system: &System,
     found: &Recording,
     times: Option<Vec<f64>>,
+    dense: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    let (mut t, mut y, mut modes) = (Vec::new(), Vec::new(), Vec::new());
+    let (steps, n) = (found.steps(), found.run.state.len());
+    let most = times.as_ref().map_or(steps.len() + found.events.len(), Vec::len) + 1;
+    let (mut t, mut modes) = (Vec::with_capacity(most), Vec::with_capacity(most));
+    let mut y = Vec::with_capacity(most * n);
     let mut point = |s: f64, mode: usize, state: &[f64]| {
         t.push(s);
         modes.push(mode);
@@ -323,16 +326,20 @@ fn columns<'py>(
     if let Some(times) = times {
         // A run that ends early ends with a point, whatever times are wanted.
         let last = times.iter().any(|&s| s > found.run.s).then_some(found.run.s);
-        for s in times.into_iter().take_while(|&s| s <= found.run.s).chain(last) {
-            if let Some(state) = found.at(s) {
-                point(s, found.mode_at(s), &state);
+        let wanted = times.into_iter().take_while(|&s| s <= found.run.s).chain(last);
+        let wanted: Vec<f64> = wanted.collect();
+        in_pieces(py, wanted.len(), None, |piece| {
+            for &s in &wanted[piece] {
+                if let Some(state) = found.at(s) {
+                    point(s, found.mode_at(s), &state);
+                }
             }
-        }
+            Ok(())
+        })?;
     } else {
         let changes = |it: &&DynamicSwitch<usize>| it.before != it.after;
         let mut events = found.events.iter().filter(changes).peekable();
-        let n = found.run.state.len();
-        for step in found.steps() {
+        for step in steps {
             while let Some(event) = events.next_if(|event| event.s <= step.s) {
                 point(event.s, event.from, &event.before);
             }
@@ -372,13 +379,19 @@ fn columns<'py>(
     columns.set_item("preempted", preempted)?;
     let rests = found.rests.iter().map(|it| (it.s, it.error, it.guard, it.from, it.to));
     columns.set_item("rests", rests.collect::<Vec<_>>())?;
-    let steps = found.steps();
-    columns.set_item("starts", reals(steps.iter().map(|it| it.s).collect()))?;
-    columns.set_item("sizes", reals(steps.iter().map(|it| it.h).collect()))?;
-    let step_modes: Vec<usize> = steps.iter().map(|it| it.mode).collect();
-    columns.set_item("segment_modes", step_modes.into_pyarray(py))?;
-    let coefficients = steps.iter().flat_map(|it| it.coefficients.iter().copied());
-    columns.set_item("coefficients", reals(coefficients.collect()))?;
+    columns.set_item("samples", samples(steps, n))?;
+    if dense {
+        columns.set_item("starts", reals(steps.iter().map(|it| it.s).collect()))?;
+        columns.set_item("sizes", reals(steps.iter().map(|it| it.h).collect()))?;
+        let step_modes: Vec<usize> = steps.iter().map(|it| it.mode).collect();
+        columns.set_item("segment_modes", step_modes.into_pyarray(py))?;
+        let count = steps.iter().map(|it| it.coefficients.len()).sum();
+        let mut coefficients = Vec::with_capacity(count);
+        for step in steps {
+            coefficients.extend_from_slice(&step.coefficients);
+        }
+        columns.set_item("coefficients", reals(coefficients))?;
+    }
     columns.set_item("start_time", found.start())?;
     columns.set_item("end_time", found.run.s)?;
     columns.set_item("end_mode", found.run.mode)?;
@@ -401,6 +414,21 @@ fn columns<'py>(
     }
     columns.set_item("statistics", statistics)?;
     Ok(columns)
+}
+
+/// Times, modes and states within a few steps, at no events.
+fn samples(steps: &[DynamicSegment<usize>], n: usize) -> Vec<(f64, usize, Vec<f64>)> {
+    const PLACES: usize = 8;
+    /// An irrational part of a step.
+    const PART: f64 = 0.61803;
+    let last = steps.len().saturating_sub(1);
+    let count = steps.len().min(PLACES);
+    let chosen = (0..count).map(|place| &steps[place * last / count.saturating_sub(1).max(1)]);
+    let sample = |step: &DynamicSegment<usize>| {
+        let s = step.s + PART * step.h;
+        (s, step.mode, step.at(s, n))
+    };
+    chosen.map(sample).collect()
 }
 
 /// How the run ended.

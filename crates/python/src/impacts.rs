@@ -161,6 +161,7 @@ impl BodyPair {
         engine: Choice,
         strict: bool,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyArray1<f64>>)> {
         expect_equal([velocities.0.len()?, velocities.1.len()?])?;
         let (normal, tangential) = (numbers(&velocities.0)?, numbers(&velocities.1)?);
@@ -193,7 +194,8 @@ impl BodyPair {
         };
         let (mut columns, mut values) = (Columns::default(), Vec::new());
         let count = normal.len();
-        let ended = Threads::new(threads, count)?.each(py, count, work, |(part, found)| {
+        let threads = Threads::new(threads, count)?.telling(progress);
+        let ended = threads.each(py, count, work, |(part, found)| {
             if let (true, Some((index, failure))) = (strict, part.failures.first()) {
                 let place = if count == 1 { String::new() } else { format!("[{index}] ") };
                 return Err(failure.exception(&place));

@@ -74,7 +74,9 @@ mod _native {
     #[pymodule_export]
     use super::steps::TimeSteps;
     #[pymodule_export]
-    use super::studies::{asymptote, compare_laws, converge, reproduce, reproduction_parts};
+    use super::studies::{
+        asymptote, compare_laws, converge, reproduce, reproduce_all, reproduction_parts,
+    };
     #[pymodule_export]
     use super::style::style;
     #[pymodule_export]

@@ -50,7 +50,7 @@ impl OrbitSystem {
         itinerary: Vec<String>,
         durations: Option<Vec<f64>>,
     ) -> PyResult<String> {
-        let found = self.on_thread(py, move |orbits| {
+        let found = self.on_thread(py, None, move |orbits| {
             let itinerary: Vec<&str> = itinerary.iter().map(String::as_str).collect();
             let (itinerary, durations) = (&itinerary[..], durations.as_deref());
             orbits.find(&parameters, &Guess { itinerary, durations, ..guess(&start) })
@@ -64,14 +64,15 @@ impl OrbitSystem {
         parameters: Vec<f64>,
         start: Start,
         time: f64,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let work = move |orbits: &Orbits| orbits.settled(&parameters, &guess(&start), time);
-        self.written(self.on_thread(py, work)?)
+        self.written(self.on_thread(py, progress, work)?)
     }
 
     fn continued(&self, py: Python<'_>, orbit: &str, parameters: Vec<f64>) -> PyResult<String> {
         let orbit = self.read(orbit)?;
-        self.written(self.on_thread(py, move |orbits| orbits.continued(&orbit, &parameters))?)
+        self.written(self.on_thread(py, None, move |orbits| orbits.continued(&orbit, &parameters))?)
     }
 
     fn switched(
@@ -84,9 +85,10 @@ impl OrbitSystem {
     ) -> PyResult<String> {
         let (special, beside) = (self.read_special(special)?, self.read(beside)?);
         let work = move |orbits: &Orbits| orbits.switched(&special, &beside, parameter, aside);
-        self.written(self.on_thread(py, work)?)
+        self.written(self.on_thread(py, None, work)?)
     }
 
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn branch(
         &self,
         py: Python<'_>,
@@ -95,18 +97,19 @@ impl OrbitSystem {
         range: (f64, f64),
         longest_step: f64,
         most_points: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let orbit = self.read(orbit)?;
         let options = steps(longest_step, most_points);
         let work = move |orbits: &Orbits| orbits.branch(&orbit, parameter, range.into(), &options);
-        self.written_branch(self.on_thread(py, work)?)
+        self.written_branch(self.on_thread(py, progress, work)?)
     }
 
     /// The branch in the text of a file.
     fn read_branch(&self, py: Python<'_>, text: &str) -> PyResult<String> {
         sealed::check(text.as_bytes()).map_err(bad_input)?;
         let document: Document<BranchRecord> = serde_json::from_str(text).map_err(bad_input)?;
-        self.written_branch(self.on_thread(py, move |orbits| document.branch(orbits))?)
+        self.written_branch(self.on_thread(py, None, move |orbits| document.branch(orbits))?)
     }
 
     fn resumed(
@@ -116,10 +119,11 @@ impl OrbitSystem {
         range: (f64, f64),
         longest_step: f64,
         most_points: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let document: Document<BranchRecord> = serde_json::from_str(branch).map_err(bad_input)?;
         let options = steps(longest_step, most_points);
-        let found = self.on_thread(py, move |orbits| {
+        let found = self.on_thread(py, progress, move |orbits| {
             orbits.resumed(&document.branch(orbits)?, range.into(), &options)
         })?;
         self.written_branch(found)
@@ -132,11 +136,12 @@ impl OrbitSystem {
         parameters: [usize; 2],
         window: [[f64; 2]; 2],
         longest_step: f64,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let special = self.read_special(special)?;
         let options = steps(longest_step, BranchOptions::default().most_points);
         let work = move |orbits: &Orbits| orbits.curve(&special, parameters, window, &options);
-        let found = self.on_thread(py, work)?;
+        let found = self.on_thread(py, progress, work)?;
         let document = Document::of_curve(&self.0, "", &found.map_err(exception)?);
         serde_json::to_string(&document).map_err(failed)
     }
@@ -149,12 +154,13 @@ impl OrbitSystem {
         parameters: [usize; 2],
         window: [[f64; 2]; 2],
         cells: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<OrbitMap> {
         let orbit = self.read(orbit)?;
         let options = RegionOptions { cells, ..RegionOptions::default() };
         let centre = orbit.clone();
         let work = move |orbits: &Orbits| orbits.regions(&centre, parameters, window, &options);
-        let atlas = self.on_thread(py, work)?.map_err(exception)?;
+        let atlas = self.on_thread(py, progress, work)?.map_err(exception)?;
         let document = Document::of_regions(&self.0, "", (&orbit, parameters), &atlas, &options);
         OrbitMap::new(document)
     }
@@ -167,8 +173,9 @@ impl OrbitSystem {
         start: Start,
         rule: String,
         span: (f64, f64),
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Points> {
-        let found = self.on_thread(py, move |orbits| {
+        let found = self.on_thread(py, progress, move |orbits| {
             let section = Section { rule: &rule, skip: span.0, time: span.1 };
             orbits.section(&parameters, &guess(&start), &section)
         })?;
@@ -176,6 +183,7 @@ impl OrbitSystem {
     }
 
     /// The same over values of a parameter, upwards and downwards: values, points and troubles.
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn diagram(
         &self,
         py: Python<'_>,
@@ -184,8 +192,9 @@ impl OrbitSystem {
         over: (usize, Vec<f64>),
         rule: String,
         span: (f64, f64),
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<Vec<DiagramColumn>>> {
-        let found = self.on_thread(py, move |orbits| {
+        let found = self.on_thread(py, progress, move |orbits| {
             let section = Section { rule: &rule, skip: span.0, time: span.1 };
             orbits.diagram(&parameters, &guess(&start), (over.0, &over.1[..]), &section)
         })?;
@@ -202,14 +211,16 @@ impl OrbitSystem {
         parameters: Vec<f64>,
         start: Start,
         span: (f64, f64),
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<(Vec<f64>, f64, usize)> {
         let (skip, time) = span;
         let work = move |orbits: &Orbits| orbits.exponents(&parameters, &guess(&start), skip, time);
-        let found = self.on_thread(py, work)?;
+        let found = self.on_thread(py, progress, work)?;
         found.map(|it| (it.values, it.spread, it.events)).map_err(exception)
     }
 
     /// The attractors as JSON, and the number of that of each run, or -1.
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn basins(
         &self,
         py: Python<'_>,
@@ -218,8 +229,9 @@ impl OrbitSystem {
         components: [usize; 2],
         values: (Vec<f64>, Vec<f64>),
         time: f64,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<(Vec<String>, Vec<i64>)> {
-        let found = self.on_thread(py, move |orbits| {
+        let found = self.on_thread(py, progress, move |orbits| {
             let values = [&values.0[..], &values.1];
             orbits.basins(&parameters, &guess(&start), components, values, time)
         })?;
@@ -243,8 +255,10 @@ impl OrbitSystem {
     }
 
     /// Times and states along an orbit.
-    fn course(&self, orbit: &str, parts: usize) -> PyResult<Vec<(f64, Vec<f64>)>> {
-        self.0.course(&self.read(orbit)?, parts).map_err(exception)
+    fn course(&self, py: Python<'_>, orbit: &str, parts: usize) -> PyResult<Points> {
+        let orbit = self.read(orbit)?;
+        let found = self.on_thread(py, None, move |orbits| orbits.course(&orbit, parts))?;
+        found.map_err(exception)
     }
 }
 
@@ -253,10 +267,13 @@ impl OrbitSystem {
     fn on_thread<T: Send + 'static>(
         &self,
         py: Python<'_>,
+        progress: Option<Py<PyAny>>,
         work: impl FnOnce(&Orbits) -> T + Send + 'static,
     ) -> PyResult<T> {
         let orbits = Arc::clone(&self.0);
-        abandonable(py, 0, None, move |_, abandoned| work(&orbits.until(Arc::clone(abandoned))))
+        abandonable(py, 0, progress.as_ref(), move |_, watch| {
+            work(&orbits.watched(Arc::clone(watch)))
+        })
     }
 
     /// An orbit from its record, solved for again.

@@ -15,22 +15,26 @@ pub const PAUSE: Duration = Duration::from_millis(50);
 const PART: usize = 256;
 /// Parts of a piece, at least: threads that are done early take more of them.
 const PARTS: usize = 16;
-/// Cases between two looks for Ctrl-C, at first and at most.
-const PIECE: [usize; 2] = [1 << 8, 1 << 15];
+/// Cases between two looks for Ctrl-C, at most.
+const PIECE: usize = 1 << 15;
 
-/// Calls `work` on all pieces of `0..count`, in order, and looks for Ctrl-C between them. A piece
-/// takes about [`PAUSE`].
+/// Calls `work` on all pieces of `0..count`, in order. Between them it looks for Ctrl-C, and tells
+/// `progress` how many cases are done. A piece takes about [`PAUSE`].
 pub fn in_pieces(
     py: Python<'_>,
     count: usize,
+    progress: Option<&Py<PyAny>>,
     mut work: impl FnMut(Range<usize>) -> PyResult<()>,
 ) -> PyResult<()> {
-    let (mut first, [mut size, most]) = (0, PIECE);
+    let (mut first, mut size) = (0, 1);
     while first < count {
         let (last, begun) = (count.min(first + size), Instant::now());
         work(first..last)?;
         py.check_signals()?;
-        size = if begun.elapsed() > PAUSE { (size / 2).max(1) } else { most.min(2 * size) };
+        if let Some(progress) = progress {
+            progress.call1(py, (last, count))?;
+        }
+        size = if begun.elapsed() > PAUSE { (size / 2).max(1) } else { PIECE.min(2 * size) };
         first = last;
     }
     Ok(())
@@ -41,17 +45,22 @@ fn part_size(cases: usize) -> usize {
     cases.div_ceil(PARTS).clamp(1, PART)
 }
 
-/// The threads of one call; none where the caller's own is enough.
-pub struct Threads(Option<ThreadPool>);
+/// The threads of one call; none where the caller's own is enough. And what is told how far it is.
+pub struct Threads(Option<ThreadPool>, Option<Py<PyAny>>);
 
 impl Threads {
     /// `threads` threads, or as many as there are cores if it is 0, for `count` cases.
     pub fn new(threads: usize, count: usize) -> PyResult<Self> {
         if threads == 1 || count <= PART {
-            return Ok(Self(None));
+            return Ok(Self(None, None));
         }
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(failed)?;
-        Ok(Self(Some(pool)))
+        Ok(Self(Some(pool), None))
+    }
+
+    /// The same threads, with a callable that is told how far the call is.
+    pub fn telling(self, progress: Option<Py<PyAny>>) -> Self {
+        Self(self.0, progress)
     }
 
     /// A pool, even if one thread is enough.
@@ -67,7 +76,7 @@ impl Threads {
         work: impl Fn(Range<usize>) -> T + Sync,
         mut take: impl FnMut(T) -> PyResult<()>,
     ) -> PyResult<()> {
-        in_pieces(py, count, |piece| {
+        in_pieces(py, count, self.1.as_ref(), |piece| {
             let size = part_size(piece.len());
             let parts = piece.len().div_ceil(size);
             let part = |index: usize| {

@@ -109,7 +109,8 @@ impl Atlas {
     ) -> PyResult<Bound<'py, PyTuple>> {
         expect_equal([kappa.len()?, psi.len()?])?;
         let (kappa, psi) = (numbers(&kappa)?, numbers(&psi)?);
-        let (mut regions, mut distances) = (Vec::new(), Vec::new());
+        let mut regions = Vec::with_capacity(kappa.len());
+        let mut distances = Vec::with_capacity(kappa.len());
         let work = |part: std::ops::Range<usize>| {
             part.map(|index| self.place(kappa[index], psi[index])).collect::<Result<Vec<_>, _>>()
         };

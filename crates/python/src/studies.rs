@@ -1,13 +1,15 @@
 //! Studies: stiff springs, convergence, contact laws, and the paper checked.
 
 use std::fmt::Display;
+use std::path::PathBuf;
 
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use stickslip_figure::pictures::studies::{self as pictures, Picture};
 use stickslip_model::Contact;
 use stickslip_plane::Range;
-use stickslip_plane::progress::Report;
+use stickslip_plane::progress::{Progress, Report};
 use stickslip_reproduction::figures::Reproduction;
 use stickslip_reproduction::statements::Spring;
 use stickslip_studies::{Cell, Study, StudyError, contact_laws, convergence, stiff_springs};
@@ -102,12 +104,46 @@ pub fn reproduce(
         .get(part)
         .ok_or_else(|| bad_input(format!("part {part}; expected 0 to {}", parts.len() - 1)))?;
     let reproduction = Reproduction::new(cells, Spring::Reset);
-    let work = move |_: Report<'_>| chosen.run(&reproduction);
+    let work = move |report: Report<'_>| {
+        report(Progress::Begin { steps: 1 });
+        let made = chosen.run(&reproduction);
+        report(Progress::Advance { steps: 1 });
+        made
+    };
     let section = watched(py, threads, progress.as_ref(), work)?.map_err(failed)?;
     let study = dictionary(py, &section.study, &section.pictures)?;
     let objections: Vec<_> = section.objections.iter().map(ToString::to_string).collect();
     study.set_item("objections", objections)?;
     Ok(study)
+}
+
+/// Writes the page of the whole reproduction, with its files, into a directory: what speaks against
+/// it.
+#[pyfunction]
+#[pyo3(signature = (directory, cells, threads, progress=None))]
+pub fn reproduce_all(
+    py: Python<'_>,
+    directory: PathBuf,
+    cells: usize,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Option<String>> {
+    let work = move |report: Report<'_>| {
+        let tell = |index: usize, count: usize, title: &'static str| {
+            let done = usize::from(index > 0);
+            report(Progress::Begin { steps: if index == 0 { count } else { 0 } });
+            report(Progress::Advance { steps: done });
+            report(Progress::Now { what: title });
+        };
+        let written = stickslip_cli::write_everything(&directory, cells, Spring::Reset, &tell);
+        report(Progress::Advance { steps: 1 });
+        written
+    };
+    match watched(py, threads, progress.as_ref(), work)? {
+        Ok(()) => Ok(None),
+        Err(stickslip_cli::Failure::Objection(objection)) => Ok(Some(objection)),
+        Err(error) => Err(PyOSError::new_err(error.to_string())),
+    }
 }
 
 /// What `make` makes, on so many threads, as a dictionary.

@@ -1,5 +1,7 @@
 //! Tables of the restitution.
 
+use std::ops;
+
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use stickslip_plane::progress::Report;
@@ -141,7 +143,13 @@ impl RestitutionTable {
         x: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let x = numbers(&x)?;
-        let found: Vec<f64> = py.detach(|| x.iter().map(|&x| self.0.eps_n(x)).collect());
+        let values =
+            |part: ops::Range<usize>| x[part].iter().map(|&x| self.0.eps_n(x)).collect::<Vec<_>>();
+        let mut found = Vec::with_capacity(x.len());
+        Threads::new(1, x.len())?.each(py, x.len(), values, |part| {
+            found.extend(part);
+            Ok(())
+        })?;
         Ok(found.into_pyarray(py))
     }
 

@@ -10,9 +10,10 @@ use std::fs;
 use std::path::Path;
 
 use fastrand::Rng;
-use stickslip_files::input::atlas;
+use stickslip_files::input;
 use stickslip_files::map::{Parts, Results};
 use stickslip_plane::sealed;
+use stickslip_practice::tables::{RestitutionTable, TableDocument};
 
 const BALL: &str = "parameter height = 1, e = 0.5, until = 3\nstate x = height, v = 0\nx' = v\n\
                     v' = -1\nwhen x < 0 \"bounce\"\n  x := 0\n  v := -e*v\nend = until\n";
@@ -22,12 +23,21 @@ const CUSP: &str = "parameter m = 0.1, n = 1\nstate x = 0, y = 1\ny' = m + n*y -
                     x' = 1 - x\n  when x > 0.5 \"up\" -> down\nmode down\n  x' = -1 - x\n  \
                     when x < -0.5 \"down\" -> up\nstart in up\nend = 9\n";
 
+const GLASS: &str = include_str!("../../../examples/glass_on_wall.json");
+
 /// What is made, by which command, and how it is read.
-const FILES: [(&str, &str, Reader); 6] = [
+const FILES: [(&str, &str, Reader); 9] = [
+    ("atlas", "trace --kappa 3:8 --psi 0.5:1.5 --out", atlas),
+    ("table", "table --kappa 3:8 --psi 0.5:1.5 --bound 1e-5 --regions --out", table),
+    (
+        "table of velocities",
+        "table --bodies glass.json --normal 1:2 --tangential 0.5:2 --bound 1e-4 --regions --out",
+        table,
+    ),
     (
         "family atlas",
         "trace ball.slip --x e=0.2:0.5 --y height=0.9:1.2 --max-events 4 --out",
-        family_atlas,
+        atlas,
     ),
     (
         "stack of a system",
@@ -39,7 +49,7 @@ const FILES: [(&str, &str, Reader); 6] = [
     (
         "regions of an orbit",
         "regions cusp.slip --itinerary up,down --x m=-0.3:0.3 --y n=0.5:1 --cells 2 --out",
-        family_atlas,
+        atlas,
     ),
     ("branch", "branch cusp.slip --itinerary up,down --over m=-0.5:0.5 --out", document),
     ("part of a map", "map --kappa 0:70 --psi 0:2.9 --size 30x20 --part 1/1 --out", part),
@@ -48,8 +58,15 @@ const FILES: [(&str, &str, Reader); 6] = [
 /// Reads a file, and says what is in it.
 type Reader = fn(&Path) -> Result<String, String>;
 
-fn family_atlas(path: &Path) -> Result<String, String> {
-    shown(atlas::read(path))
+fn atlas(path: &Path) -> Result<String, String> {
+    shown(input::atlas::read(path))
+}
+
+fn table(path: &Path) -> Result<String, String> {
+    let text = fs::read(path).map_err(|error| error.to_string())?;
+    sealed::check(&text).map_err(|error| error.to_string())?;
+    let document: TableDocument = serde_json::from_slice(&text).map_err(|e| e.to_string())?;
+    shown(RestitutionTable::try_from(document).map(|table| TableDocument::from(&table)))
 }
 
 fn document(path: &Path) -> Result<String, String> {
@@ -120,14 +137,14 @@ fn damaged(file: &[u8], random: &mut Rng) -> Vec<u8> {
 /// Damages each file so many times, and says what became of it.
 fn battery(times: usize) -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
-    for (name, text) in [("ball.slip", BALL), ("cusp.slip", CUSP)] {
+    for (name, text) in [("ball.slip", BALL), ("cusp.slip", CUSP), ("glass.json", GLASS)] {
         fs::write(folder.path().join(name), text)?;
     }
     for (index, (name, command, read)) in FILES.into_iter().enumerate() {
         let path = folder.path().join(format!("{index}.file"));
         let words = ["stickslip"].into_iter().chain(command.split_whitespace());
         let placed = |word: &str| match word {
-            "ball.slip" | "cusp.slip" => folder.path().join(word).into_os_string(),
+            "ball.slip" | "cusp.slip" | "glass.json" => folder.path().join(word).into_os_string(),
             other => other.into(),
         };
         let words = words.map(placed);

@@ -12,6 +12,7 @@ use stickslip_orbits::{Attractor, Basins};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
+use crate::output::progress::Bar;
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different};
 use crate::shared::orbit::{StartArguments, StartedSystem, component};
@@ -80,9 +81,11 @@ pub fn run(arguments: &BasinsArguments) -> Result<(), Failure> {
     });
     let [across, up]: [Vec<f64>; 2] = values;
     let guess = started.guess();
+    let bar = Bar::watching(started.orbits.watch());
     let found = pool.install(|| {
         started.orbits.basins(&started.parameters, &guess, places, [&across, &up], *settle)
     });
+    drop(bar);
     let found = found.map_err(|error| Failure::Usage(error.to_string()))?;
     let mut stored = Vec::new();
     if let Some(path) = table {

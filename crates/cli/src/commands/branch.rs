@@ -15,6 +15,7 @@ use stickslip_orbits::{Branch, BranchOptions, Orbit};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
+use crate::output::progress::Bar;
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
 use crate::shared::orbit::{FoundOrbit, GuessArguments, component, failure};
@@ -96,6 +97,7 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
     let parameter = place(system, "--over", &over.name)?;
     let shown = shown(arguments, &found)?;
     let range = [over.range.low, over.range.high];
+    let bar = Bar::watching(found.orbits.watch());
     let branch = match known {
         None => found.orbits.branch(&found.orbit, parameter, range, &options),
         Some(known) if known.parameter == parameter => {
@@ -107,6 +109,7 @@ pub fn run(arguments: &BranchArguments) -> Result<(), Failure> {
             return Err(Failure::Usage(message));
         }
     };
+    drop(bar);
     let branch = branch.map_err(failure)?;
     let document = Document::of_branch(&found.orbits, &found.name, &branch);
     let mut stored = Vec::new();

@@ -15,6 +15,7 @@ use stickslip_orbits::{BranchOptions, Orbits};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
+use crate::output::progress::Bar;
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
 use crate::shared::orbit::{document, failure, special};
@@ -88,7 +89,9 @@ pub fn run(arguments: &CurveArguments) -> Result<(), Failure> {
     let known = record.special(&orbits);
     let known = known.map_err(|error| Failure::Usage(error.to_string()))?;
     let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
+    let bar = Bar::watching(orbits.watch());
     let curve = orbits.curve(&known, parameters, window, &BranchOptions::default());
+    drop(bar);
     let curve = curve.map_err(failure)?;
     let document = Document::of_curve(&orbits, &title(&arguments.system), &curve);
     let mut stored = Vec::new();

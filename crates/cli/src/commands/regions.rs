@@ -12,6 +12,7 @@ use stickslip_tracer::Names;
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
+use crate::output::progress::Bar;
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different, write_json};
 use crate::shared::orbit::{GuessArguments, failure};
@@ -73,7 +74,9 @@ pub fn run(arguments: &RegionsArguments) -> Result<(), Failure> {
     let parameters = [place(system, "--x", &x.name)?, place(system, "--y", &y.name)?];
     let window = [[x.range.low, x.range.high], [y.range.low, y.range.high]];
     let regions = || found.orbits.regions(&found.orbit, parameters, window, &options);
+    let bar = Bar::watching(found.orbits.watch());
     let atlas = pool.install(regions).map_err(failure)?;
+    drop(bar);
     let names = OrbitNames { axes: [x.name.clone(), y.name.clone()] };
     let mut stored = Vec::new();
     if let Some(file) = file {

@@ -82,37 +82,51 @@ fn spring() -> impl TypedValueParser<Value = Spring> {
 /// Files or standard output cannot be written, a part fails, or something speaks against a result.
 /// In the last case the page is complete and says so.
 pub fn run(arguments: &ReproduceArguments) -> Result<(), Failure> {
-    match &arguments.out {
-        Some(out) => write_everything(out, arguments),
-        None => statements::print_tested(arguments),
+    let Some(out) = &arguments.out else { return statements::print_tested(arguments) };
+    let tell = |index: usize, count: usize, title: &str| match index + 1 {
+        number if number < count => say(format_args!("{number} of {}: {title}", count - 1)),
+        _ => say(format_args!("beside it: {title}")),
+    };
+    let (cells, model) = (usize::from(arguments.cells), arguments.model);
+    let pool = arguments.threads.pool()?;
+    let written = pool.install(|| write_everything(out, cells, model, &tell));
+    if matches!(written, Ok(()) | Err(Failure::Objection(_))) {
+        say(format_args!("everything is on {}", out.join("index.html").display()));
     }
+    written
 }
 
 /// Computes all parts, writes the files of each part as soon as it is done, and the page at the
-/// end.
-fn write_everything(out: &Path, arguments: &ReproduceArguments) -> Result<(), Failure> {
+/// end. Before each part, `tell` hears its index, their number and its title; the last one is not
+/// of the paper.
+///
+/// # Errors
+/// As [`run`].
+pub fn write_everything(
+    out: &Path,
+    cells: usize,
+    model: Spring,
+    tell: &(dyn Fn(usize, usize, &'static str) + Sync),
+) -> Result<(), Failure> {
     prepare(out)?;
-    let pool = arguments.threads.pool()?;
-    let cells = usize::from(arguments.cells);
-    let reproduction = Reproduction::new(cells, arguments.model);
+    let reproduction = Reproduction::new(cells, model);
     let parts = Reproduction::parts();
     let mut sections = Vec::with_capacity(parts.len());
     for (index, part) in parts.iter().enumerate() {
-        say(format_args!("{} of {}: {}", index + 1, parts.len(), part.title));
-        let section = pool.install(|| part.run(&reproduction))?;
+        tell(index, parts.len() + 1, part.title);
+        let section = part.run(&reproduction)?;
         write_section(&section, out)?;
         sections.push(section);
     }
     let usual = contact_laws::ContactLawSettings::default();
     let laws = contact_laws::ContactLawSettings { cells: cells.min(usual.cells), ..usual };
-    say(format_args!("beside it: {}", contact_laws::TITLE));
-    pool.install(|| write_page(&laws, out))?;
+    tell(parts.len(), parts.len() + 1, contact_laws::TITLE);
+    write_page(&laws, out)?;
     let page = out.join("index.html");
     write(&out.join("report.json"), page::report::json(&sections).as_bytes())?;
     write(&out.join("report.md"), page::report::markdown(&sections).as_bytes())?;
     write(&out.join("explorer.html"), stickslip_page::PAGE.as_bytes())?;
     write(&page, page::html(&sections).as_bytes())?;
-    say(format_args!("everything is on {}", page.display()));
     let objection = sections.into_iter().flat_map(|section| section.objections).next();
     objection.map_or(Ok(()), |objection| Err(Failure::Objection(objection)))
 }

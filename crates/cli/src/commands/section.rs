@@ -15,6 +15,7 @@ use stickslip_orbits::{Column, Exponents, OrbitError, Section, SectionPoint};
 
 use crate::error::Failure;
 use crate::output::console::{counted, deliver, print};
+use crate::output::progress::Bar;
 use crate::output::text::{self, number};
 use crate::shared::files::{picture, plotted, require_different};
 use crate::shared::orbit::{StartArguments, StartedSystem, component, failure};
@@ -98,6 +99,7 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
     let show = show.collect::<Result<Vec<_>, _>>()?;
     let section = Section { rule: &arguments.rule, skip: arguments.skip, time: arguments.length };
     let (orbits, guess) = (&started.orbits, started.guess());
+    let bar = Bar::watching(orbits.watch());
     let (mut lines, mut troubled) = (Vec::new(), Vec::new());
     let mut stored = Vec::new();
     let (found, axis) = if let Some(over) = &arguments.over {
@@ -136,6 +138,7 @@ pub fn run(arguments: &SectionArguments) -> Result<(), Failure> {
         let column = Column { value: f64::NAN, points, trouble: None };
         ([vec![column], Vec::new()], None)
     };
+    drop(bar);
     if let Some(path) = table {
         stored.push(write_table(path, &started, axis, &found)?);
     }

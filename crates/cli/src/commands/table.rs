@@ -74,21 +74,16 @@ pub struct TableArguments {
 
     /// Bound of the errors of ε_t and ε_n; 1e-12 to 1e-3, with other laws than the paper's from
     /// 1e-9
-    #[arg(long, value_name = "E", help_heading = "RestitutionTable", allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", help_heading = "Table", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option, default_value = "1e-8")]
     pub bound: f64,
 
     /// Give the table the number of the atlas' region at each place too, with its switches
-    #[arg(long, help_heading = "RestitutionTable")]
+    #[arg(long, help_heading = "Table")]
     pub regions: bool,
 
     /// What names in a C header begin with
-    #[arg(
-        long,
-        value_name = "NAME",
-        help_heading = "RestitutionTable",
-        default_value = "stickslip"
-    )]
+    #[arg(long, value_name = "NAME", help_heading = "Table", default_value = "stickslip")]
     pub prefix: String,
 
     /// File for the table: JSON, NumPy arrays or a C header; may be given more than once

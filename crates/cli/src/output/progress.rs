@@ -2,30 +2,47 @@
 
 use std::fmt;
 use std::io::{self, IsTerminal};
+use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use stickslip_orbits::OrbitWatch;
 use stickslip_plane::progress::Progress;
 
 use super::console::say;
 
 /// How often progress is said where no bar is seen.
 const INTERVAL: Duration = Duration::from_mins(1);
+/// How often it is asked for, where nobody reports it.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Progress on standard error. The bar disappears when it is dropped.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
-    /// Ends the lines when it is dropped; none on a terminal.
-    _lines: Option<Sender<()>>,
+    /// Ends lines, where there is no terminal, and questions, unless it is told, when dropped.
+    beside: Vec<Sender<()>>,
 }
 
 impl Bar {
     /// A bar that counts the steps of a computation.
     pub fn steps() -> Self {
         Self::new(None, "{bar:25} {percent}%, {eta} left  {msg}")
+    }
+
+    /// A bar that counts the steps of work on orbits, for which it asks.
+    pub fn watching(watch: Arc<OrbitWatch>) -> Self {
+        let mut made = Self::steps();
+        let bar = made.bar.clone();
+        let ask = move || {
+            let (done, steps) = watch.progress();
+            bar.set_length(steps as u64);
+            bar.set_position(done as u64);
+        };
+        made.beside.push(every(PAUSE, ask));
+        made
     }
 
     /// A bar that counts the bytes of an input of `length` bytes, if that is known.
@@ -53,7 +70,7 @@ impl Bar {
         let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let seen = io::stderr().is_terminal();
         let lines = (!seen).then(|| lines(bar.clone(), INTERVAL, say));
-        Self { bar, _lines: lines }
+        Self { bar, beside: lines.into_iter().collect() }
     }
 
     /// Shows that `count` more are done.
@@ -90,10 +107,15 @@ fn lines(
     interval: Duration,
     out: impl Fn(String) + Send + 'static,
 ) -> Sender<()> {
+    every(interval, move || out(line(&bar)))
+}
+
+/// Calls `action` every `interval`, until the sender is dropped.
+fn every(interval: Duration, action: impl Fn() + Send + 'static) -> Sender<()> {
     let (sender, ended) = mpsc::channel();
     thread::spawn(move || {
         while ended.recv_timeout(interval) == Err(RecvTimeoutError::Timeout) {
-            out(line(&bar));
+            action();
         }
     });
     sender

@@ -15,6 +15,7 @@ use stickslip_plane::sealed;
 use super::files::Named;
 use super::system::{place as parameter, read, setting, time, title, values};
 use crate::error::Failure;
+use crate::output::progress::Bar;
 
 /// A system, and where its runs start.
 #[derive(Debug, clap::Args)]
@@ -174,6 +175,7 @@ impl GuessArguments {
         let itinerary: Vec<&str> = self.itinerary.iter().map(String::as_str).collect();
         let (itinerary, durations) = (&itinerary[..], self.durations.as_deref());
         let guess = Guess { itinerary, durations, ..started.guess() };
+        let _bar = Bar::watching(started.orbits.watch());
         let orbit = match self.settle {
             Some(time) => started.orbits.settled(&started.parameters, &guess, time),
             None => started.orbits.find(&started.parameters, &guess),

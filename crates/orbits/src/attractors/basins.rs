@@ -9,6 +9,7 @@ use crate::equations::{Draft, is_apart};
 use crate::find::{Guess, Orbits};
 use crate::orbit::Orbit;
 use crate::settle::require_time;
+use crate::watch::Watched;
 
 /// How much two states of one attractor may differ, of the largest value of the component in the
 /// second halves of runs that settle.
@@ -96,6 +97,7 @@ impl Orbits {
             Program::compile(&self.system.graph, &mode.slopes, inputs).with(parameters)
         });
         let slopes: Vec<Program> = slopes.collect();
+        self.watch.begin(runs);
         let fates = (0..runs).into_par_iter().map(|run| {
             let mut state = state.clone();
             (state[one], state[other]) = (xs[run % xs.len()], ys[run / xs.len()]);
@@ -104,6 +106,7 @@ impl Orbits {
             let fate = start.map_or(Fate::Unknown, |start| {
                 self.fate(&start, (time, &mut sizes), &slopes, parameters)
             });
+            self.watch.advance(1);
             (fate, sizes)
         });
         let fates: Vec<(Fate, Vec<f64>)> = fates.collect();
@@ -149,7 +152,9 @@ impl Orbits {
         slopes: &[Program],
         parameters: &[f64],
     ) -> Fate {
-        let Ok(found) = self.settling(start, time, &coarse()) else { return Fate::Unknown };
+        let Ok(found) = self.settling(start, time, &coarse(), Watched::one(&self.watch)) else {
+            return Fate::Unknown;
+        };
         let run = &found.run;
         let [whole, late] = &found.sizes;
         // What dies out never becomes the 0 of its orbit.

@@ -17,6 +17,7 @@ use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::itinerary::Leg;
 use crate::settle::{leg, require_time};
+use crate::watch::Watched;
 
 /// Directions whose growths in one piece differ more are made orthogonal in its middle.
 const MOST_GROWTH: f64 = 1e8;
@@ -57,7 +58,7 @@ impl Orbits {
         let runnable = self.start(parameters, guess)?;
         let (start, pair) = (runnable.start(), EmbeddedPair::Dop853);
         let from = start.s + skip;
-        let mut found = Switches::until(&self.stop);
+        let mut found = Switches::from(Watched::over(&self.watch, [start.s, from + time]));
         let run = run_dynamic_with(pair, &runnable, start, from + time, &self.options, &mut found);
         let run = run.map_err(|error| OrbitError::Run { segment: 0, error })?;
         require_end(run.outcome, run.s)?;
@@ -69,6 +70,7 @@ impl Orbits {
         if moving.is_empty() {
             return Ok(Exponents { values: Vec::new(), spread: 0.0, events: events.len() });
         }
+        let carried = Watched::over(&self.watch, [start.s, run.s]);
         let mut carrier = Carrier::new(self, parameters, moving);
         let (mut mode, mut s, mut state) = (start.mode, start.s, start.state.to_vec());
         // What had grown by how much at the start, in the middle and at the end of the time.
@@ -86,6 +88,7 @@ impl Orbits {
                     let at = (s + part * duration, &state[..]);
                     state = carrier.flow(mode, at, duration, PIECE * PIECE * time)?;
                     part += 1.0;
+                    carried.stops(s + part * duration);
                 }
                 s = end;
                 if let Some(event) = event {

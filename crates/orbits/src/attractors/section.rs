@@ -8,6 +8,7 @@ use super::{Switches, coarse, require_end, require_skip};
 use crate::error::OrbitError;
 use crate::find::{Guess, Orbits};
 use crate::settle::require_time;
+use crate::watch::Watched;
 
 /// Which events of a run are looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +56,9 @@ impl Orbits {
         let places = self.places(section)?;
         let runnable = self.start(parameters, guess)?;
         let mut points = Vec::new();
-        let run = self.reach(&runnable, section, &places, &mut points);
+        let start = runnable.start().s;
+        let watched = Watched::over(&self.watch, [start, start + section.skip + section.time]);
+        let run = self.reach(&runnable, section, (&places, watched), &mut points);
         let run = run.map_err(|error| OrbitError::Run { segment: 0, error })?;
         require_end(run.outcome, run.s)?;
         Ok(points)
@@ -76,6 +79,7 @@ impl Orbits {
     ) -> Result<[Vec<Column>; 2], OrbitError> {
         let places = self.places(section)?;
         self.require_parameter(parameter)?;
+        self.watch.begin(2 * values.len());
         let chain = |values: &mut dyn Iterator<Item = f64>| {
             let (mut parameters, mut columns) = (parameters.to_vec(), Vec::new());
             let mut last: Option<DynamicRun<usize>> = None;
@@ -89,7 +93,13 @@ impl Orbits {
                     Some(run) => self.halfway.starting(&parameters, run.mode, run.s, &run.state)?,
                 };
                 let mut points = Vec::new();
-                let run = self.reach(&runnable, section, &places, &mut points);
+                let run = self.reach(
+                    &runnable,
+                    section,
+                    (&places, Watched::one(&self.watch)),
+                    &mut points,
+                );
+                self.watch.advance(1);
                 let (run, trouble) = match run {
                     Ok(run) if run.outcome == Outcome::ReachedEnd => (Some(run), None),
                     Ok(run) => {
@@ -134,10 +144,10 @@ impl Orbits {
         &self,
         runnable: &Runnable,
         section: &Section<'_>,
-        places: &[(usize, usize)],
+        (places, watched): (&[(usize, usize)], Watched<'_>),
         points: &mut Vec<SectionPoint>,
     ) -> Result<DynamicRun<usize>, RunError> {
-        let (mut found, modes) = (Switches::until(&self.stop), self.system.modes.len());
+        let (mut found, modes) = (Switches::from(watched), self.system.modes.len());
         let start = runnable.start();
         let from = start.s + section.skip;
         let (pair, end) = (EmbeddedPair::Dop853, from + section.time);

@@ -274,6 +274,7 @@ impl Follower<'_> {
                 return half;
             }
             half.points.push(self.finished(to));
+            self.along.orbits.watch.count();
             if is_last || ends {
                 return half;
             }

@@ -1,7 +1,9 @@
 //! Exponents, sections, diagrams and basins against closed forms.
 
+use std::sync::Arc;
+
 use stickslip_expression::System;
-use stickslip_orbits::{Attractor, Guess, Orbit, Orbits, Section};
+use stickslip_orbits::{Attractor, Guess, Orbit, OrbitError, OrbitWatch, Orbits, Section};
 
 use crate::impact;
 
@@ -210,4 +212,25 @@ fn what_dies_out_is_no_other_attractor() {
     let [Attractor::Orbit(orbit)] = &found.attractors[..] else { panic!("{found:?}") };
     assert!(orbit.segments[0].state[1].abs() < 1e-12 && orbit.is_stable(), "{orbit:?}");
     assert_eq!(found.labels, [Some(0); 4]);
+}
+
+#[test]
+fn a_watch_knows_the_steps_and_stops_them() {
+    let section = Section { rule: "folds", skip: 0.5, time: 20.0 };
+    let (orbits, guess, values) = (orbits(TENT), Guess::default(), [1.8, 1.85, 1.9]);
+    let watched = |work: &dyn Fn(&Orbits)| {
+        let watch = Arc::new(OrbitWatch::default());
+        work(&orbits.watched(Arc::clone(&watch)));
+        watch.progress()
+    };
+    let diagram = |own: &Orbits| own.diagram(&[1.9], &guess, (0, &values), &section).map(drop);
+    assert_eq!(watched(&|own| diagram(own).expect("a diagram")), (6, 6));
+    let run = |own: &Orbits| own.section(&[1.9], &guess, &section).map(drop);
+    assert_eq!(watched(&|own| run(own).expect("points")), (1000, 1000));
+    let exponents = |own: &Orbits| own.exponents(&[1.9], &guess, 0.5, 20.0).map(drop);
+    assert_eq!(watched(&|own| exponents(own).expect("exponents")), (2000, 2000));
+    let stopped = orbits.watched(Arc::default());
+    stopped.watch().stop();
+    assert_eq!(diagram(&stopped), Err(OrbitError::Stopped));
+    assert!(run(&stopped).is_err() && exponents(&stopped).is_err());
 }

@@ -1,5 +1,7 @@
 //! Atlases of families: what is found, and its file.
 
+use std::ops::Range;
+
 use numpy::{IntoPyArray, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -17,6 +19,7 @@ use stickslip_tracer::{
 
 use crate::arrays::{expect_equal, numbers};
 use crate::failure::{bad_input, failed};
+use crate::parallel::Threads;
 
 /// A label: fires, begins, accumulates, unfinished or fails, and the guards that fire; or no_start,
 /// and the condition that does not hold.
@@ -167,17 +170,24 @@ impl FamilyAtlas {
         y: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         let points = points(&x, &y)?;
-        let (regions, distances): (Vec<i64>, Vec<f64>) = py.detach(|| {
-            let place = |point: &Point| {
-                let region = match self.atlas.plane.locate(point) {
-                    Location::Region(region) => i64::try_from(region).unwrap_or(i64::MAX),
-                    Location::OnBoundary { .. } => -1,
-                    Location::Outside => -2,
-                };
-                (region, self.atlas.plane.vertical_distance(point).unwrap_or(f64::NAN))
+        let place = |point: &Point| {
+            let region = match self.atlas.plane.locate(point) {
+                Location::Region(region) => i64::try_from(region).unwrap_or(i64::MAX),
+                Location::OnBoundary { .. } => -1,
+                Location::Outside => -2,
             };
-            points.iter().map(place).unzip()
-        });
+            (region, self.atlas.plane.vertical_distance(point).unwrap_or(f64::NAN))
+        };
+        let places = |part: Range<usize>| points[part].iter().map(place).collect::<Vec<_>>();
+        let mut regions = Vec::with_capacity(points.len());
+        let mut distances = Vec::with_capacity(points.len());
+        Threads::new(1, points.len())?.each(py, points.len(), places, |part| {
+            for (region, distance) in part {
+                regions.push(region);
+                distances.push(distance);
+            }
+            Ok(())
+        })?;
         (regions.into_pyarray(py), distances.into_pyarray(py)).into_pyobject(py)
     }
 }

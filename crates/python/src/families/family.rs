@@ -6,12 +6,15 @@ use std::sync::Arc;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use rayon::prelude::*;
 use stickslip_expression::{RuleOrder, SystemFamily};
+use stickslip_plane::progress::{Progress, Report};
 use stickslip_tracer::{
     Accumulation, AtlasOptions, Family, Point, RunNames, TraceOptions, Window,
     tracing::{Monitor, follow},
 };
 
+use crate::background::watched;
 use crate::failure::{bad_input, failed};
 use crate::families::atlas::{
     Description, FamilyAtlas, Label, expect, followed, label, place, points,
@@ -95,14 +98,10 @@ impl HybridFamily {
         window: ((f64, f64), (f64, f64)),
     ) -> PyResult<Option<(usize, usize, usize)>> {
         let _level = Level::enter()?;
-        let made = self.made.up_to(Accumulation::EVENTS);
-        let runner = Runner::new(&made, Arc::new(Trouble::default()), !made.is_compiled());
+        let few = self.up_to(Accumulation::EVENTS);
         let window = window_of(window);
-        let work = || Accumulation::seen(&runner, &window);
-        let found = if made.is_compiled() { py.detach(work) } else { work() };
-        if let Some(error) = runner.trouble().take_failure() {
-            return Err(error);
-        }
+        let found =
+            few.by_runs(py, (1, None), move |runner, _| Accumulation::seen(runner, &window))?;
         Ok(found.map(|it| (it.events, it.runs, it.of)))
     }
 
@@ -162,9 +161,10 @@ impl HybridFamily {
         x: PyReadonlyArray1<'_, f64>,
         y: PyReadonlyArray1<'_, f64>,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<Label>> {
         let _level = Level::enter()?;
-        self.labels_at(py, &points(&x, &y)?, threads)
+        self.labels_at(py, &points(&x, &y)?, threads, progress)
     }
 
     /// The labels of points of an atlas, by runs where its regions do not tell them; `None` outside
@@ -176,12 +176,14 @@ impl HybridFamily {
         x: PyReadonlyArray1<'_, f64>,
         y: PyReadonlyArray1<'_, f64>,
         threads: usize,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<Option<Label>>> {
         expect(&atlas.names, &self.names)?;
         let points = points(&x, &y)?;
         let (mut labels, open) = atlas.told(&points);
         let places: Vec<Point> = open.iter().map(|&index| points[index]).collect();
-        for (index, found) in open.into_iter().zip(self.labels_at(py, &places, threads)?) {
+        let found = self.labels_at(py, &places, threads, progress)?;
+        for (index, found) in open.into_iter().zip(found) {
             labels[index] = Some(found);
         }
         Ok(labels)
@@ -189,10 +191,11 @@ impl HybridFamily {
 
     /// The margins of the run at a point: the guards that have fired before, the guard, the name of
     /// the place, and the value.
-    fn margins(&self, x: f64, y: f64) -> PyResult<(Label, Vec<MarginFields>)> {
+    fn margins(&self, py: Python<'_>, x: f64, y: f64) -> PyResult<(Label, Vec<MarginFields>)> {
         let _level = Level::enter()?;
-        let runner = self.runner(Trouble::default(), true);
-        let found = runner.free_run(&Point::new(x, y)).map_err(|error| runner.why(&error))?;
+        let point = Point::new(x, y);
+        let found = self.by_runs(py, (1, None), move |runner, _| runner.free_run(&point))?;
+        let found = found.map_err(bad_input)?;
         let margins = found.margins.into_iter().map(|(margin, value)| {
             let exits = margin.exits.iter().map(|exit| exit.guard).collect();
             (exits, margin.guard, place(&margin), value)
@@ -242,21 +245,65 @@ impl HybridFamily {
         self.made.is_compiled().then_some(threads)
     }
 
+    /// What `work` makes of runs, of which it may report the steps, on so many threads. If no run
+    /// needs this thread, Ctrl-C does not wait for the one that is under way.
+    fn by_runs<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        (threads, progress): (usize, Option<&Py<PyAny>>),
+        work: impl FnOnce(&Runner, Report<'_>) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let trouble = Arc::new(Trouble::default());
+        let runner = Runner::new(&self.made, Arc::clone(&trouble), !self.made.is_compiled());
+        let found = if self.made.is_compiled() {
+            watched(py, threads, progress, move |report| work(&runner, report))
+        } else {
+            Ok(work(&runner, &|_| ()))
+        };
+        if let Some(error) = trouble.take_failure() {
+            return Err(error);
+        }
+        if found.is_err() {
+            // Nobody waits for the runs that would follow.
+            trouble.fail(failed("abandoned"));
+        }
+        found
+    }
+
     fn runner(&self, trouble: Trouble, looks: bool) -> Runner {
         Runner::new(&self.made, Arc::new(trouble), looks)
     }
 
     /// The labels of the runs at points.
-    fn labels_at(&self, py: Python<'_>, points: &[Point], threads: usize) -> PyResult<Vec<Label>> {
-        let threads = self.threads(threads).unwrap_or(1);
-        let runner = self.runner(Trouble::default(), threads == 1);
+    fn labels_at(
+        &self,
+        py: Python<'_>,
+        points: &[Point],
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Vec<Label>> {
+        if self.made.is_compiled() {
+            let points = points.to_vec();
+            let found = self.by_runs(py, (threads, progress.as_ref()), move |runner, report| {
+                report(Progress::Begin { steps: points.len() });
+                let one = |point: &Point| {
+                    let found = runner.label(point).map(|one| label(&one));
+                    report(Progress::Advance { steps: 1 });
+                    found
+                };
+                points.par_iter().map(one).collect::<Vec<_>>()
+            })?;
+            return found.into_iter().collect::<Result<_, _>>().map_err(bad_input);
+        }
+        let runner = self.runner(Trouble::default(), true);
         let mut labels = Vec::with_capacity(points.len());
         let work = |part: Range<usize>| {
             let labels =
                 points[part].iter().map(|point| runner.label(point).map(|one| label(&one)));
             labels.collect::<Result<Vec<_>, _>>()
         };
-        Threads::new(threads, points.len())?.each(py, points.len(), work, |part| {
+        let threads = Threads::new(1, points.len())?.telling(progress);
+        threads.each(py, points.len(), work, |part| {
             labels.extend(part.map_err(|error| runner.why(&error))?);
             Ok(())
         })?;

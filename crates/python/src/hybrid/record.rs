@@ -163,6 +163,13 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
         while let Some(&time) = times.get(*done)
             && (s - time) * self.direction > 0.0
         {
+            // A step may have many times.
+            if self.signals.stop(time)
+                && let Some(error) = self.signals.raised()
+            {
+                self.trouble.fail(error);
+                return;
+            }
             *done += 1;
             if let Some((mode, dense)) = self.segments.last(self.last.2.len()) {
                 self.points.push(mode, time, &dense.at(fraction(&dense, time)));

@@ -6,6 +6,7 @@ use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_solver::dynamic::DynamicDense;
 
 use crate::failure::bad_input;
+use crate::parallel::in_pieces;
 
 /// The dense output of successive steps, in the order of the run.
 #[derive(Default)]
@@ -107,17 +108,20 @@ pub fn evaluate_dense<'py>(
     }
     let mut states = vec![f64::NAN; times.len() * last.len()];
     let forwards = view.sizes.first().is_none_or(|&size| size > 0.0);
-    let rows = states.chunks_exact_mut(last.len().max(1));
-    for (&time, row) in times.iter().zip(rows) {
-        if time == end {
-            row.copy_from_slice(last);
-        } else if let Some(index) = view.index(time)
-            && (if forwards { time < end } else { time > end })
-        {
-            let segment = view.segment(index).ok_or_else(|| bad_input("unfit coefficients"))?;
-            segment.write(fraction(&segment, time), row);
+    in_pieces(py, times.len(), None, |piece| {
+        let part = &mut states[piece.start * last.len()..piece.end * last.len()];
+        for (&time, row) in times[piece].iter().zip(part.chunks_exact_mut(last.len().max(1))) {
+            if time == end {
+                row.copy_from_slice(last);
+            } else if let Some(index) = view.index(time)
+                && (if forwards { time < end } else { time > end })
+            {
+                let segment = view.segment(index).ok_or_else(|| bad_input("unfit coefficients"))?;
+                segment.write(fraction(&segment, time), row);
+            }
         }
-    }
+        Ok(())
+    })?;
     Ok(states.into_pyarray(py))
 }
 

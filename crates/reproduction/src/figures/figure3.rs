@@ -32,8 +32,8 @@ pub fn run(reproduction: &Reproduction) -> Result<ReportSection, ReproductionErr
     let pictures = vec![Picture {
         name: "figure3".to_owned(),
         caption: format!(
-            "ε_t without damping, μ = {}, α = {}. To the left the axis is κ of (24). To the right \
-             it is ακ, so that {} at its end is κ = {}. Colours are the same on both sides of \
+            "ε_t without damping, μ = {}, α = {}. The axis of the first map is κ of (24), that of \
+             the second one ακ, so that {} at its end is κ = {}. Colours are the same on both sides of \
              zero.",
             number(MU, 4),
             number(ALPHA, 4),

@@ -166,8 +166,8 @@ fn caption(line: &[Interval], points: &[LetteredPoint]) -> String {
          has {} letters, and the line crosses {} regions. What the paper says of its points decides \
          which is which: at b, c and d all switches fall in the decompression, at e the first one just \
          before the largest compression, j is a brief rise by two, o has two switches. From above, a \
-         to n are the first regions in turn; {nameless}; o is the last one. To the left the points are \
-         at the same ratios.",
+         to n are the first regions in turn; {nameless}; o is the last one. In the first map the \
+         points are at the same ratios.",
         Reading::Axis.axis(),
         number(STIFFNESS, 4),
         points.len() - 1,
