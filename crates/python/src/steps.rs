@@ -18,7 +18,8 @@ pub struct TimeSteps(time_steps::TimeSteps);
 #[pymethods]
 impl TimeSteps {
     /// Measures the errors of impacts with a law; `steps` are numbers of steps in the undamped
-    /// contact time, with so many start phases, and `reduction` is μ and α.
+    /// contact time, with so many start phases, `scheme` has the overlap beside it, and `reduction` is
+    /// μ and α.
     #[staticmethod]
     #[pyo3(signature = (parameters, law, steps, scheme, reduction, threads, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
@@ -27,12 +28,12 @@ impl TimeSteps {
         parameters: Parameters<'_>,
         law: LawChoice,
         steps: (Vec<f64>, usize),
-        (scheme, overlap): (String, f64),
+        scheme: (String, f64),
         reduction: (f64, f64),
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let names = Scheme::ALL.map(Scheme::name);
+        let ((scheme, overlap), names) = (scheme, Scheme::ALL.map(Scheme::name));
         let scheme = Scheme::find(&scheme)
             .ok_or_else(|| bad_input(format!("scheme = {scheme:?}; expected one of {names:?}")))?;
         let settings = TimeStepSettings {

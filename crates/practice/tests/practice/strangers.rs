@@ -3,7 +3,7 @@
 use stickslip_model::Contact;
 use stickslip_plane::progress;
 use stickslip_practice::time_steps::{
-    self, Scheme, Status, SteppedQuantity, TimeStepSettings, step,
+    self, Scheme, Status, SteppedQuantity, Stepping, TimeStepSettings, step,
 };
 
 use crate::time_steps::{contact, run, stepped};
