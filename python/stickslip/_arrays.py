@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 def unmasked(values: Any) -> NDArray[Any]:
     """The values as an array: of doubles, with NaN where they are masked, if they can be masked."""
-    # Without this module, which takes long to import, there are no masked arrays.
+    # Without this module, which takes long to import, there are no masked arrays, nor while another
+    # thread imports it.
     ma: Any = sys.modules.get("numpy.ma")
-    if ma is not None and isinstance(values, ma.MaskedArray):
+    masked = getattr(ma, "MaskedArray", None)
+    if masked is not None and isinstance(values, masked):
         filled: NDArray[np.float64] = ma.filled(ma.asarray(values, dtype=np.float64), np.nan)
         return filled
     return np.asarray(values)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Vector: TypeAlias = tuple[float, float, float]
+#: A number, or None where it is not given.
+Given: TypeAlias = "float | None"
 T = TypeVar("T")
 
 
@@ -92,42 +94,42 @@ class Surface:
     #: Coefficient of friction; the static one where it decays.
     friction: float
     #: Stiffness of the tangential spring in kg/s², where it is constant.
-    tangential_stiffness_kg_per_s2: float | None = None
+    tangential_stiffness_kg_per_s2: Given = None
     #: Damping time A of the normal force in s.
-    damping_time_s: float | None = None
+    damping_time_s: Given = None
     #: Stiffness of a linear normal force in kg/s².
-    normal_stiffness_kg_per_s2: float | None = None
+    normal_stiffness_kg_per_s2: Given = None
     #: Constant of Hertz' force in kg/(s² √m); without it, that of the materials.
-    hertz_stiffness_kg_per_s2_m0_5: float | None = None
+    hertz_stiffness_kg_per_s2_m0_5: Given = None
     #: Constant of Mindlin's stiffness in kg/(s² √m); without it, that of the materials.
-    mindlin_stiffness_kg_per_s2_m0_5: float | None = None
+    mindlin_stiffness_kg_per_s2_m0_5: Given = None
     #: Damping of the normal force in kg/(s mᵉ), with e = 0, 1/2 or 1/4 as the law says.
-    damping_coefficient: float | None = None
+    damping_coefficient: Given = None
     #: Damping c of the normal force without unit, of Tsuji's law or of a linear one; half of it, or
     #: c over the root of 5, is critical_damping_ratio.
-    damping_ratio: float | None = None
+    damping_ratio: Given = None
     #: Ratio of tangential and normal damping; 0 without it.
-    tangential_damping_ratio: float | None = None
+    tangential_damping_ratio: Given = None
     #: Damping ratio as particle codes define it: the damping over the critical one.
-    critical_damping_ratio: float | None = None
+    critical_damping_ratio: Given = None
     #: Ratio k2/k1 of the stiffnesses of a hysteretic normal force, falling and growing.
-    unloading_stiffness_ratio: float | None = None
+    unloading_stiffness_ratio: Given = None
     #: What k2/k1 − 1 is in 1/m of the greatest overlap, where the damping is hardening.
-    hardening_per_m: float | None = None
+    hardening_per_m: Given = None
     #: Least normal velocity in m/s at which the bodies yield, where the damping is yielding.
-    yield_velocity_m_per_s: float | None = None
+    yield_velocity_m_per_s: Given = None
     #: Instead, the contact pressure in Pa up to which they are elastic.
-    yield_pressure_pa: float | None = None
+    yield_pressure_pa: Given = None
     #: Surface energy of adhesion in J/m², half the work of adhesion, where the law has it.
-    surface_energy_j_per_m2: float | None = None
+    surface_energy_j_per_m2: Given = None
     #: Coefficient of normal restitution, instead of a damping.
-    e_n: float | None = None
+    e_n: Given = None
     #: Normal velocity in m/s to which e_n belongs, in laws where it depends on the velocity.
-    e_n_at_m_per_s: float | None = None
+    e_n_at_m_per_s: Given = None
     #: Coefficient to which friction decays with the tangential velocity, at most friction.
-    dynamic_friction: float | None = None
+    dynamic_friction: Given = None
     #: That decay in s/m, which goes with it.
-    friction_decay_s_per_m: float | None = None
+    friction_decay_s_per_m: Given = None
 
     def _constants(self, law: Law | None) -> str:
         constants = asdict(self)

@@ -1,5 +1,7 @@
 """Arrays as users have them: fields of records, masked, of other types, written to later."""
 
+import sys
+import types
 from typing import Any
 
 import numpy as np
@@ -56,6 +58,11 @@ def test_masked_values_are_none() -> None:
     kappa = np.ma.array([18.0, 63.0, 200.0], mask=[False, True, False])
     found = stickslip.eps_t(kappa, 0.5, errors="nan")
     assert np.isnan(found[1]) and np.isfinite(found[[0, 2]]).all()
+
+
+def test_another_thread_imports_what_masks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "numpy.ma", types.ModuleType("numpy.ma"))
+    assert stickslip.eps_t([3.0], 0.4)[0] == stickslip.collide(3.0, 0.4).eps_t
 
 
 def test_masked_values_are_none_everywhere() -> None:
