@@ -108,7 +108,8 @@ pub struct Tile {
     pub switch_count: Vec<i32>,
 }
 
-/// Stands for ε_t where it could not be computed, or there is none: a NaN that always has the same bits.
+/// Stands for ε_t where it could not be computed, or there is none: a NaN that always has the same
+/// bits.
 pub const NO_EPS_T: f64 = f64::NAN;
 /// Stands for the number of switches where it could not be computed.
 pub const NO_COUNT: i32 = -1;

@@ -6,17 +6,17 @@
 //! difference in ε_t, in ε_n and in the energy after the contact. Steps are given as numbers t_c/dt
 //! of steps in the undamped contact time t_c ([`undamped_contact_time`]).
 //!
-//! Start reading here; then, in this order: `stepped` (what codes do in a step, and one
-//! collision in steps), `turning` (spheres with a normal that turns), `settings`, `measure` (errors over impacts and start phases),
-//! `seconds` (times in SI units).
+//! Start reading here; then, in this order: `stepped` (what codes do in a step, and one collision
+//! in steps), `turning` (spheres with a normal that turns), `settings`, `measure` (errors over
+//! impacts and start phases), `seconds` (times in SI units).
 //!
 //! Against LAMMPS itself, in 264 impacts with 28 laws: the root mean square of the error of ε_t
 //! differs from the error of LAMMPS' own collisions by at most 0.3 % at t_c/20, 2.5 % at t_c/50 and
 //! 3.1 % at t_c/100. Exceptions are five elastic impacts at t_c/100, whose errors below 4e-6 depend
 //! on the overlap of LAMMPS' spheres (`docs/validation.md`).
 //!
-//! The contact is a point, unless an overlap is given ([`Stepping::overlap`]): then the normal turns
-//! during the contact, and what that changes is in the errors too, however short steps are.
+//! The contact is a point, unless an overlap is given ([`Stepping::overlap`]): then the normal
+//! turns during the contact, and what that changes is in the errors too, however short steps are.
 
 mod measure;
 mod seconds;

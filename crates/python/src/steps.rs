@@ -18,8 +18,8 @@ pub struct TimeSteps(time_steps::TimeSteps);
 #[pymethods]
 impl TimeSteps {
     /// Measures the errors of impacts with a law; `steps` are numbers of steps in the undamped
-    /// contact time, with so many start phases, `scheme` has the overlap beside it, and `reduction` is
-    /// μ and α.
+    /// contact time, with so many start phases, `scheme` has the overlap beside it, and `reduction`
+    /// is μ and α.
     #[staticmethod]
     #[pyo3(signature = (parameters, law, steps, scheme, reduction, threads, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]

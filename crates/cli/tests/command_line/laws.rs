@@ -332,7 +332,7 @@ fn laws_that_are_not_computed_say_why() {
         ("sjkr", "this adhesion is not computed"),
         ("cohesion", "this adhesion is not computed"),
         ("rolling/sds", "rolling and twisting friction are not computed"),
-        ("thornton", "Thornton's elastic-plastic force is not computed"),
+        ("granular/mdr", "this plasticity is not computed, but thornton"),
     ] {
         for command in [format!("laws {name}"), format!("collide --kappa 3 --psi 1 --law {name}")] {
             let refused = stickslip(&command);

@@ -95,7 +95,7 @@ const DATA: [&str; 37] = [
 ];
 
 /// What is on the page of contact laws, beside the other one.
-pub const LAWS: usize = 26;
+pub const LAWS: usize = 27;
 
 /// The files of the page of contact laws.
 pub fn names_of_laws() -> Vec<String> {
