@@ -141,7 +141,9 @@ fn battery(times: usize) -> Result<(), Box<dyn Error>> {
         fs::write(folder.path().join(name), text)?;
     }
     for (index, (name, command, read)) in FILES.into_iter().enumerate() {
-        let path = folder.path().join(format!("{index}.file"));
+        // Only the file of a table must say what it is.
+        let ending = if name.starts_with("table") { "json" } else { "file" };
+        let path = folder.path().join(format!("{index}.{ending}"));
         let words = ["stickslip"].into_iter().chain(command.split_whitespace());
         let placed = |word: &str| match word {
             "ball.slip" | "cusp.slip" | "glass.json" => folder.path().join(word).into_os_string(),
