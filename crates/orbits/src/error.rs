@@ -79,7 +79,7 @@ pub enum OrbitError {
         /// The length of the last update, of the size of the unknowns.
         update: f64,
     },
-    /// The flag of [`Orbits::until`](crate::Orbits::until) was set.
+    /// The watch of [`Orbits::watched`](crate::Orbits::watched) was stopped.
     #[error("stopped")]
     Stopped,
     /// What a system follows at a point is not decided.

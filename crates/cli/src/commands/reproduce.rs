@@ -101,7 +101,7 @@ pub fn run(arguments: &ReproduceArguments) -> Result<(), Failure> {
 /// of the paper.
 ///
 /// # Errors
-/// As [`run`].
+/// A file cannot be written, or a part of the page cannot be computed.
 pub fn write_everything(
     out: &Path,
     cells: usize,
