@@ -43,6 +43,7 @@ mod stack;
 #[cfg(unix)]
 mod streams;
 mod table;
+mod terms_of_laws;
 mod timestep;
 mod usage;
 mod version;

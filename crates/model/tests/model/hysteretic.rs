@@ -19,15 +19,13 @@ fn contact(kappa: f64, psi: f64, damping: f64, law: Law) -> Contact {
     Contact::new(kappa, psi, damping).and_then(|it| it.with_law(law, 0.0)).unwrap()
 }
 
-/// 100 contacts, integrated in plain time by another program.
-#[test]
-fn hysteretic_contacts_are_those_of_another_program() {
-    let reference = file("hysteretic_contacts");
+/// Compares 100 contacts with those of a file, which another program integrated in plain time.
+fn compare(name: &str, law: impl Fn(&serde_json::Value) -> Law) {
+    let reference = file(name);
     let cases = reference["cases"].as_array().unwrap();
     for case in cases {
         let number = |name: &str| case[name].as_f64().unwrap();
-        let normal = if case["normal"] == "hertz" { Normal::Hertz } else { Normal::Linear };
-        let law = Law { end: ContactEnd::Force, ..hysteretic(normal) };
+        let law = Law { end: ContactEnd::Force, ..law(case) };
         let found = collide(contact(number("kappa"), number("psi"), number("damping"), law));
         let expected = [number("eps_t"), number("eps_n"), number("time")];
         let own = [found.eps_t(), found.eps_n, found.contact_time];
@@ -36,6 +34,18 @@ fn hysteretic_contacts_are_those_of_another_program() {
         assert_eq!(found.itinerary(), case["itinerary"].as_str().unwrap(), "{case}");
     }
     assert_eq!(cases.len(), 100);
+}
+
+#[test]
+fn hysteretic_contacts_are_those_of_another_program() {
+    compare("hysteretic_contacts", |case| {
+        hysteretic(if case["normal"] == "hertz" { Normal::Hertz } else { Normal::Linear })
+    });
+}
+
+#[test]
+fn contacts_that_yield_are_those_of_another_program() {
+    compare("yielding_contacts", |_| yielding());
 }
 
 /// ε_n = √(k₁/k₂), (k₁/k₂)^(1/3) with x^(3/2), and 1/√(1 + S v √(m/k₁)) where k₂ = k₁(1 + S ξ).
@@ -123,24 +133,6 @@ fn the_course_keeps_the_overlap_that_is_left() {
 
 fn yielding() -> Law {
     presets::find("thornton").unwrap().law
-}
-
-/// 100 contacts of bodies that yield, integrated in plain time by another program.
-#[test]
-fn contacts_that_yield_are_those_of_another_program() {
-    let reference = file("yielding_contacts");
-    let cases = reference["cases"].as_array().unwrap();
-    for case in cases {
-        let number = |name: &str| case[name].as_f64().unwrap();
-        let law = Law { end: ContactEnd::Force, ..yielding() };
-        let found = collide(contact(number("kappa"), number("psi"), number("damping"), law));
-        let expected = [number("eps_t"), number("eps_n"), number("time")];
-        let own = [found.eps_t(), found.eps_n, found.contact_time];
-        let close = expected.iter().zip(own).all(|(expected, own)| (expected - own).abs() < 1e-7);
-        assert!(close, "{own:?} {case}");
-        assert_eq!(found.itinerary(), case["itinerary"].as_str().unwrap(), "{case}");
-    }
-    assert_eq!(cases.len(), 100);
 }
 
 /// Thornton, J. Appl. Mech. 64, 383 (1997), eq. 45, and 1 up to the yield velocity.
