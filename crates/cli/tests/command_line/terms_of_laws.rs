@@ -1,5 +1,5 @@
-//! What a law may have beside a spring and a dashpot: friction that decays, hysteresis, adhesion; and
-//! the limits without friction and without a spring.
+//! What a law may have beside a spring and a dashpot: friction that decays, hysteresis, adhesion;
+//! and the limits without friction and without a spring.
 
 use serde_json::{Value, json};
 
