@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
+use crate::events::along_step::first_side;
 use crate::events::arrival::SAME;
 use crate::events::by_bounds::Sight;
 use crate::events::doubt::{ADDED, TOGETHER};
@@ -138,6 +139,11 @@ impl<S: System> Examination<'_, S> {
                 }
             };
             self.room.give(ahead);
+            // Where rounding hides what the state does, the time alone seems to bring it back.
+            let passes = passes && {
+                let at = (mode, guard);
+                first_side(system, at, step, self.statistics, self.room) * value <= 0.0
+            };
             // Closer to the start, signs are rounding.
             let theta = 2.0 * (reach / step.h + resolution(step.s, step.h));
             if passes && theta < 1.0 {
