@@ -1,6 +1,6 @@
 // The command line and the Python lines that compute what the page shows.
 
-import type { Ball, State } from "./state";
+import { isAdhesive, type Ball, type State } from "./state";
 import type { Axis, Collision } from "./types";
 
 /** The least part of an axis' upper end that is traced, where it begins at 0. */
@@ -103,22 +103,26 @@ function reduction({ mu, alpha }: State): string[] {
 }
 
 function options(state: State, damping: number): string[] {
-  const { axes, law, tangential, dynamic, decay } = state;
+  const { axes, law, tangential, dynamic, decay, pull_off } = state;
   const given = damping > 0 ? [`--damping ${damping}`] : [];
   if (axes === "velocities") return given;
   if (law !== "paper") given.push(`--law ${law}`);
   if (tangential > 0) given.push(`--tangential-damping ${tangential}`);
+  if (isAdhesive(law)) given.push(`--pull-off ${pull_off}`);
   if (decays(state))
     given.push(`--dynamic-friction ${dynamic}`, `--friction-decay ${decay}`);
   return given;
 }
 
 function keywords(state: State, damping: number): string[] {
-  const { axes, law, tangential, dynamic, decay } = state;
+  const { axes, law, tangential, dynamic, decay, pull_off } = state;
   const given = damping > 0 ? [`damping=${damping}`] : [];
   if (axes === "velocities") return given;
-  if (decays(state))
-    given.push(`law={${terms(law)}, "friction": {"dynamic": ${dynamic}, "decay": ${decay}}}`);
+  const added = [
+    ...(isAdhesive(law) ? [`"pull_off": ${pull_off}`] : []),
+    ...(decays(state) ? [`"friction": {"dynamic": ${dynamic}, "decay": ${decay}}`] : []),
+  ];
+  if (added.length) given.push(`law={${[terms(law), ...added].join(", ")}}`);
   else if (law !== "paper") given.push(`law="${law}"`);
   if (tangential > 0) given.push(`tangential_damping=${tangential}`);
   return given;
@@ -130,9 +134,14 @@ function terms(law: string): string {
   return `**stickslip.laws()["${name}"].law${limited ? `, "${limited}": True` : ""}`;
 }
 
-/** Whether friction decays with the velocity: boundaries are not traced then. */
-export function decays({ axes, dynamic, decay }: State): boolean {
-  return axes !== "velocities" && dynamic < 1 && decay > 0;
+/** Whether boundaries are traced: with decaying friction and with adhesion they are not. */
+export function isTraced(state: State): boolean {
+  return state.axes === "velocities" || !(decays(state) || isAdhesive(state.law));
+}
+
+/** Whether friction decays with the velocity. */
+function decays({ dynamic, decay }: State): boolean {
+  return dynamic < 1 && decay > 0;
 }
 
 function ends({ low, high }: Axis, least = LEAST): number[] {

@@ -2,6 +2,7 @@
 
 import type { Chart, Curve, Panel } from "./chart";
 import { roomy } from "./scale";
+import { isAdhesive } from "./state";
 import { theme } from "./theme";
 import type { Contact, Law } from "./types";
 
@@ -10,6 +11,7 @@ const NAMES = [
   "compression",
   "normal_velocity",
   "normal_force",
+  "limit",
   "spring",
   "tangential_force",
   "velocity",
@@ -28,7 +30,8 @@ export function columns({ course, stride }: Contact): Course {
   return Object.fromEntries(NAMES.map((name, place) => [name, column(place)])) as Course;
 }
 
-/** The energies of a contact, as parts of that before it. */
+/** The energies of a contact, as parts of that before it. With adhesion, what is stored counts as
+ * lost, and what is stored is not a number. */
 export interface Energies {
   normal: Float64Array;
   tangential: Float64Array;
@@ -56,7 +59,9 @@ export function energies(
     all.reduce((most, value) => Math.max(most, value), 0),
   ) as [number, number];
   const overlap = (index: number) => Math.max(0, course.compression[index]!);
+  const adheres = isAdhesive(law?.name);
   const compression = each((index) => {
+    if (adheres) return NaN;
     const x = overlap(index);
     if (own?.damping === "yielding" && damping > 1) {
       // What would come back from here: the radius is larger by what the force is weaker.
@@ -78,6 +83,7 @@ export function energies(
   const powers: Numbers = { linear: 0, viscoelastic: 0.5, tsuji: 0.25 };
   const viscosity = powers[own?.damping ?? ""];
   const spring = each((index) => {
+    if (adheres) return NaN;
     if (own?.history === "none") return 0;
     const x = overlap(index);
     // What is left of the force without that of the dashpot.
@@ -90,8 +96,9 @@ export function energies(
     const stiffness = own?.tangential === "mindlin" ? kappa * Math.sqrt(x) : kappa;
     return stiffness > 0 ? (0.5 * factor * force * force) / stiffness : 0;
   });
+  const stored = (index: number) => (adheres ? 0 : compression[index]! + spring[index]!);
   const lost = course.time.map(
-    (_, index) => 1 - normal[index]! - tangential[index]! - compression[index]! - spring[index]!,
+    (_, index) => 1 - normal[index]! - tangential[index]! - stored(index),
   );
   return { normal, tangential, compression, spring, lost };
 }
@@ -108,6 +115,7 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
   const colours = theme();
   const course = columns(contact);
   const energy = energies(contact, course, law, factor);
+  const adheres = isAdhesive(law?.name);
   const other = pinned && { course: columns(pinned.contact) };
   const otherEnergy =
     pinned && other && energies(pinned.contact, other.course, pinned.law, pinned.factor);
@@ -125,20 +133,16 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
           },
         ]
       : [];
-  const usual = { dynamic: 1, decay: 0 };
-  const { dynamic, decay } = contact.document.parameters.law?.friction ?? usual;
-  const friction = course.velocity.map(
-    (velocity) => dynamic + (1 - dynamic) * Math.exp(-decay * Math.abs(velocity)),
-  );
-  const limit = course.normal_force.map((force, index) => force * friction[index]!);
+  const { limit, normal_force } = course;
   const negative = limit.map((value) => -value);
-  const most = largest([course.normal_force, ...(other ? [other.course.normal_force] : [])]);
+  const simple = limit.every((value, index) => value === Math.abs(normal_force[index]!));
+  const most = largest([limit, normal_force, ...(other ? [other.course.normal_force] : [])]);
   const forces: Panel = {
     title: "Forces",
     ...symmetric(most),
     curves: [
       ...ghost(other?.course.tangential_force),
-      { name: dynamic < 1 && decay > 0 ? "limits" : "limits ±F", colour: colours.normal, width: 1.3, dash: [4, 3], values: limit },
+      { name: simple ? "limits ±F" : "limits", colour: colours.normal, width: 1.3, dash: [4, 3], values: limit },
       { name: "", colour: colours.normal, width: 1.3, dash: [4, 3], values: negative, quiet: true },
       {
         name: "tangential Fₜ/μ",
@@ -158,6 +162,10 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
     ...around([course[key], ...(other ? [other.course[key]] : [])]),
     curves: [...ghost(other?.course[key]), { name, colour, values: course[key] }],
   });
+  const stored: Curve[] = [
+    { name: "compression", colour: colours.faint, width: 1.5, values: energy.compression },
+    { name: "spring", colour: colours.spring, width: 1.5, values: energy.spring },
+  ];
   const panels: Panel[] = [
     forces,
     single("Tangential velocity", "w", colours.velocity, "velocity"),
@@ -169,10 +177,14 @@ export function chartOf(contact: Contact, { law, factor, pinned }: Beside): Char
       curves: [
         ...ghost(otherEnergy?.lost),
         { name: "normal", colour: colours.normal, width: 1.3, values: energy.normal },
-        { name: "compression", colour: colours.faint, width: 1.5, values: energy.compression },
         { name: "tangential", colour: colours.velocity, width: 1.5, values: energy.tangential },
-        { name: "spring", colour: colours.spring, width: 1.5, values: energy.spring },
-        { name: "lost", colour: colours.force, width: 1.8, values: energy.lost },
+        ...(adheres ? [] : stored),
+        {
+          name: adheres ? "stored or lost" : "lost",
+          colour: colours.force,
+          width: 1.8,
+          values: energy.lost,
+        },
       ],
     },
   ];

@@ -40,7 +40,7 @@ function read(key: keyof State, text: string): Json {
   try {
     const given: Json = JSON.parse(text);
     // A link may leave out what is as usual.
-    const usual = { bodies: model as object, pinned: FRICTION }[key as string];
+    const usual = { bodies: model as object, pinned: LATER }[key as string];
     const value = usual && isRecord(given) ? { ...usual, ...given } : given;
     return fits(value, model, key) ? value : undefined;
   } catch {
@@ -66,7 +66,7 @@ function fits(value: Json, model: Json, key: string): boolean {
 
 const PINNED = pin(DEFAULT);
 /** What older links leave out of a pinned contact. */
-const FRICTION = { dynamic: 1, decay: 0 };
+const LATER = { dynamic: 1, decay: 0, pull_off: DEFAULT.pull_off };
 
 /** Whether a value has all fields of a model, each of its form. */
 function same(value: Json, model: object): boolean {

@@ -1,6 +1,6 @@
 // The page: what is where, and what changes what.
 
-import { decays, ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
+import { isTraced, ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
 import { ContactView } from "./contact";
 import { Crew, Hand, compiled } from "./crew";
 import { byId, make, onceAFrame } from "./dom";
@@ -15,6 +15,7 @@ import { OF_SPHERES, type Legend } from "./quantities";
 import {
   BALL,
   ballOf,
+  isAdhesive,
   pin,
   Store,
   type Axes,
@@ -49,7 +50,7 @@ const WINDOWS: Record<Axes, Partial<State>> = {
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
 /** The parameters that have a slider and a number. */
-const SLIDERS = ["damping", "tangential", "dynamic", "decay", "mu"] as const;
+const SLIDERS = ["damping", "tangential", "dynamic", "decay", "pull_off", "mu"] as const;
 const TABS = ["spheres", "system"] as const;
 
 class Page {
@@ -252,6 +253,7 @@ class Page {
     ).disabled = law?.name === "paper";
     byId("equations").textContent = law ? `${law.equations}. The spring ${law.energy}.` : "";
     document.body.dataset.axes = state.axes;
+    byId("pull").hidden = !isAdhesive(state.law);
     byId("pin").textContent = state.pinned ? "Unpin" : "Pin to compare";
     byId("letters").hidden = !(state.points && spheres);
     if (state.points && byId("letters").childElementCount !== this.places.letters.length) {
@@ -293,7 +295,7 @@ class Page {
       ? [["This contact", ofContact(state, contact.document)]]
       : [];
     if (state.axes === "velocities") return [...one, ["These spheres", ofImpact(state)]];
-    return decays(state) ? one : [...one, ["This window", ofWindow(state)]];
+    return isTraced(state) ? [...one, ["This window", ofWindow(state)]] : one;
   }
 
   /** Shows the lines soon: they need not follow each frame of a drag. */

@@ -96,7 +96,11 @@ export function colour({ shown, range, by }: Legend, map: MapPart, point: number
 export function words({ shown }: Legend, map: MapPart, point: number): string {
   const count = map.counts[point] as number;
   if (count === NO_COUNT) return "no result";
-  if (shown.kind === "value") return short(map.values[point * STRIDE + shown.place] as number, 4);
+  if (shown.kind === "value") {
+    const value = map.values[point * STRIDE + shown.place] as number;
+    if (Number.isNaN(value)) return shown.id === "eps_t" ? "the bodies stay together" : "no value";
+    return short(value, 4);
+  }
   return String(count);
 }
 

@@ -37,6 +37,8 @@ export interface State {
   /** The dynamic friction in units of the static one, and how fast it decays with the velocity. */
   dynamic: number;
   decay: number;
+  /** The scaled force that separates bodies that adhere. */
+  pull_off: number;
   mu: number;
   alpha: number;
   bodies: Bodies;
@@ -59,8 +61,13 @@ export interface State {
 /** The part of a state that makes a contact. */
 export type Pinned = Pick<
   State,
-  "axes" | "point" | "law" | "damping" | "tangential" | "dynamic" | "decay" | "mu" | "alpha" | "bodies"
+  "axes" | "point" | "law" | "damping" | "tangential" | "dynamic" | "decay" | "pull_off" | "mu" | "alpha" | "bodies"
 >;
+
+/** Whether a law has adhesion. */
+export function isAdhesive(law: string | undefined): boolean {
+  return /^granular\/(dmt|jkr)\//.test(law ?? "");
+}
 
 /** The steel spheres of the paper's Figure 2, whose Y is in GPa. */
 export const STEEL: Bodies = {
@@ -103,6 +110,7 @@ export const DEFAULT: State = {
   tangential: 0,
   dynamic: 1,
   decay: 0,
+  pull_off: 0.1,
   mu: 0.4,
   alpha: 2 / 7,
   bodies: STEEL,
@@ -123,20 +131,21 @@ export const DEFAULT: State = {
 
 /** The contact of a state. */
 export function pin(state: State): Pinned {
-  const { axes, point, law, damping, tangential, dynamic, decay, mu, alpha } = state;
+  const { axes, point, law, damping, tangential, dynamic, decay, pull_off, mu, alpha } = state;
   const bodies = axes === "velocities" ? state.bodies : STEEL;
-  return { axes, point, law, damping, tangential, dynamic, decay, mu, alpha, bodies };
+  return { axes, point, law, damping, tangential, dynamic, decay, pull_off, mu, alpha, bodies };
 }
 
 type Scenery = Omit<Pinned, "point">;
 
 /** The plane of collisions of a state, or of a pinned contact in any window. */
 export function scene(of: Scenery, x: Axis, y: Axis): SceneRequest {
-  const { axes, law, damping, tangential, dynamic, decay, mu, alpha, bodies } = of;
+  const { axes, law, damping, tangential, dynamic, decay, pull_off, mu, alpha, bodies } = of;
+  const friction = { dynamic, decay };
   const common = { kind: "spheres" as const, x, y, axes, mu, alpha };
   return axes === "velocities"
     ? { ...common, law: "paper", damping: 0, tangential_damping: 0, bodies }
-    : { ...common, law, damping, tangential_damping: tangential, friction: { dynamic, decay } };
+    : { ...common, law, damping, tangential_damping: tangential, friction, pull_off };
 }
 
 /** Listens to changes, and remembers states to go back to. */

@@ -77,7 +77,6 @@ export interface Collision {
     psi: number;
     damping: number;
     tangential_damping?: number;
-    law?: { friction?: { dynamic: number; decay: number } };
   };
   method: { name: string };
   eps_n: number;
@@ -107,7 +106,7 @@ export interface Law {
   energy: string;
   tangential: boolean;
   law: {
-    normal: "linear" | "hertz";
+    normal: "linear" | "hertz" | "dmt" | "jkr";
     damping: "none" | "linear" | "viscoelastic" | "tsuji" | "hysteretic" | "hardening" | "yielding";
     tangential: "constant" | "mindlin";
     history: "displacement" | "force" | "none";

@@ -91,6 +91,17 @@ for (const [name, change] of [
     },
   ],
   [
+    "adhesion",
+    {
+      law: "granular/jkr/viscoelastic/mindlin",
+      damping: 0.1,
+      tangential: 0.5,
+      pull_off: 0.07,
+      point: [8, 0.65],
+      boundaries: false,
+    },
+  ],
+  [
     "impact ratios from 0",
     {
       axes: "axis-ratio",

@@ -69,5 +69,5 @@ fn laws() -> Value {
             "checked": preset.checked,
         })
     };
-    presets::ALL.iter().map(law).collect()
+    presets::ALL.iter().chain(presets::ADHESIVE).map(law).collect()
 }

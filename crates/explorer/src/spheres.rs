@@ -15,7 +15,7 @@ use crate::axis::MapPoint;
 use crate::itinerary;
 
 /// The numbers of a moment of a course.
-pub const MOMENT: usize = 8;
+pub const MOMENT: usize = 9;
 
 /// Collisions as a page describes them.
 #[derive(Deserialize)]
@@ -27,6 +27,9 @@ pub struct SpheresRequest {
     /// How friction decays with the velocity.
     #[serde(default)]
     friction: Friction,
+    /// The force that separates the bodies, if the law is adhesive.
+    #[serde(default)]
+    pull_off: f64,
     mu: f64,
     alpha: f64,
     /// The spheres whose velocities are the axes.
@@ -134,7 +137,8 @@ impl Spheres {
                 return Ok(Self { parameters: Parameters::Velocities(pair), tangential });
             }
         };
-        let law = Law { friction: request.friction, ..preset.law };
+        let pull_off = if preset.law.normal.is_adhesive() { request.pull_off } else { 0.0 };
+        let law = Law { friction: request.friction, pull_off, ..preset.law };
         let contact = Contact::new(1.0, 1.0, damping)
             .and_then(|contact| contact.with_law(law, tangential_damping));
         let any = contact.map_err(refused)?;
@@ -252,6 +256,7 @@ impl Spheres {
                 snapshot.compression,
                 snapshot.normal_velocity,
                 snapshot.normal_force,
+                snapshot.limit,
                 snapshot.spring,
                 snapshot.tangential_force,
                 snapshot.velocity,

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::spheres::MOMENT;
 use crate::state::State;
 
 fn ask(state: &mut State, request: &Value) -> Value {
@@ -37,6 +38,27 @@ fn a_collision_its_course_a_map_and_an_atlas() {
     let atlas = ask(&mut state, &json!({ "do": "atlas" }));
     assert_eq!(atlas["agrees"], true, "{}", atlas["objection"]);
     assert_eq!(atlas["regions"].as_array().map(Vec::len), Some(7));
+}
+
+#[test]
+fn bodies_that_adhere_may_stay_together() {
+    let mut state = State::default();
+    let mut adhere = scene("granular/dmt/viscoelastic/mindlin");
+    adhere["scene"]["pull_off"] = json!(0.5);
+    assert_eq!(ask(&mut state, &adhere)["fields"][0], "eps_t");
+    // Coulomb's limit is the elastic force and twice the pull-off.
+    assert!(state.course([10.0, 1.0], 50) > 50);
+    for moment in state.numbers.chunks(MOMENT) {
+        assert!((moment[4] - moment[3] - 1.0).abs() < 1e-9, "{moment:?}");
+    }
+    adhere["scene"]["damping"] = json!(2.0);
+    ask(&mut state, &adhere);
+    let found = ask(&mut state, &json!({ "do": "collision", "x": 10.0, "y": 1.0 }));
+    assert_eq!((&found["adheres"], &found["eps_t"]), (&json!(true), &Value::Null));
+    assert_eq!(state.course([10.0, 1.0], 50), 0);
+    assert!(state.text.contains("stay together"), "{}", state.text);
+    assert_eq!(state.map([1, 1], 0..1), 1);
+    assert!(state.values[0].is_nan() && state.counts[0] < 100);
 }
 
 #[test]
