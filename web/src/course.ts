@@ -11,11 +11,11 @@ const NAMES = [
   "compression",
   "normal_velocity",
   "normal_force",
-  "limit",
   "spring",
   "tangential_force",
   "velocity",
   "sliding",
+  "limit",
 ] as const;
 export type Course = Record<(typeof NAMES)[number], Float64Array>;
 

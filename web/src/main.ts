@@ -2,73 +2,37 @@
 
 import { isTraced, ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
 import { ContactView } from "./contact";
+import { axisNames, Controls, HINT, type Controlled } from "./controls";
 import { Crew, Hand, compiled } from "./crew";
 import { byId, make, onceAFrame } from "./dom";
 import { showLegend } from "./legend";
 import { decoded, encoded } from "./link";
-import { AXES, LINE, ofSpheres, ofText, quantitiesOf, units, type Places } from "./models";
-import { rounded, typed } from "./number";
+import { LINE, ofSpheres, ofText, quantitiesOf, type Places } from "./models";
 import { write } from "./out";
 import { Plane } from "./plane";
-import { PRESETS, presetOf } from "./presets";
-import { OF_SPHERES, type Legend } from "./quantities";
-import {
-  BALL,
-  ballOf,
-  isAdhesive,
-  pin,
-  Store,
-  type Axes,
-  type Bodies,
-  type Quantity,
-  type State,
-} from "./state";
+import type { Legend } from "./quantities";
+import { Store, type State } from "./state";
 import { nameOf, SystemView } from "./system";
 import { whenSchemeChanges } from "./theme";
-import { tour } from "./tour";
-import type { Answer, Atlas, Axis, Law } from "./types";
+import type { Answer, Atlas, Law } from "./types";
 
-/** The window and the point of axes that were just chosen. */
-const WINDOWS: Record<Axes, Partial<State>> = {
-  "kappa-psi": presetOf("plane").state,
-  "kappa-ratio": {
-    x: { low: 1, high: 100, log: true },
-    y: { low: 0.02, high: 3.1, log: false },
-    point: [63, 0.7],
-  },
-  "axis-ratio": {
-    x: { low: 0, high: 20, log: false },
-    y: { low: 0, high: 4, log: false },
-    point: [18, 1.55],
-  },
-  velocities: {
-    x: { low: 0.1, high: 40, log: true },
-    y: { low: 0.01, high: 60, log: true },
-    point: [10, 5],
-  },
-};
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
-/** The parameters that have a slider and a number. */
-const SLIDERS = ["damping", "tangential", "dynamic", "decay", "pull_off", "mu"] as const;
-const TABS = ["spheres", "system"] as const;
-
-class Page {
+class Page implements Controlled {
   readonly store: Store;
-  private preset: string;
-  private laws: Law[] = [];
+  preset: string;
+  laws: Law[] = [];
   /** Whether a contact was shown. */
   private begun = false;
-  private readonly places: Places = { letters: [], top: [], small: [] };
+  readonly places: Places = { letters: [], top: [], small: [] };
   private readonly plane: Plane;
   private readonly contact: ContactView;
-  private readonly system: SystemView;
+  readonly system: SystemView;
   private readonly hand: Hand;
   readonly crew: Crew;
   private hashTimer: ReturnType<typeof setTimeout> | undefined;
   private toastTimer: ReturnType<typeof setTimeout> | undefined;
-  /** All that the controls show, but for the point. */
-  private controls = "";
+  private readonly controls: Controls;
   private legend: [Legend, Atlas | undefined] | undefined;
   private linesTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly show = onceAFrame(() => this.showNow());
@@ -108,7 +72,7 @@ class Page {
         this.showLegend();
       },
     });
-    this.wire();
+    this.controls = new Controls(this);
     this.store.listen(() => this.show());
     whenSchemeChanges(() => {
       this.contact.redraw();
@@ -126,19 +90,7 @@ class Page {
     const [laws, about] = [await ask({ do: "laws" }), await ask({ do: "about" })];
     this.laws = laws as unknown as Law[];
     byId("version").textContent = `stickslip ${about.version}`;
-    const choice = byId<HTMLSelectElement>("law");
-    const codes = [...new Set(this.laws.map((law) => law.code))];
-    choice.replaceChildren(
-      ...codes.map((code) =>
-        make(
-          "optgroup",
-          { label: code },
-          ...this.laws
-            .filter((law) => law.code === code)
-            .map((law) => make("option", { value: law.name }, law.name)),
-        ),
-      ),
-    );
+    this.controls.offer(this.laws);
     this.showNow();
     this.contact.redraw();
     const line = await ask({ do: "line", kappa: LINE.kappa, highest: LINE.highest / LINE.ratio });
@@ -155,7 +107,7 @@ class Page {
     this.show();
   }
 
-  private movePoint(point: [number, number]): void {
+  movePoint(point: [number, number]): void {
     const { state } = this.store;
     if (state.tab === "spheres") this.store.change({ point });
     else
@@ -168,13 +120,9 @@ class Page {
     this.store.change(state);
   }
 
-  private showNow(): void {
+  showNow(): void {
     const { state } = this.store;
-    this.showPoint(state);
-    const { point: _, ...others } = state;
-    const controls = JSON.stringify([others, this.preset, this.laws.length, this.places, this.system.parsed]);
-    if (controls !== this.controls) this.showControls(state);
-    this.controls = controls;
+    this.controls.show(state);
     const model =
       state.tab === "spheres" ? ofSpheres(state, this.places) : ofText(state, this.system);
     byId("no-plane").hidden = model !== undefined;
@@ -189,89 +137,6 @@ class Page {
       if (location.protocol !== "about:" && hash !== location.hash.slice(1))
         history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
     }, 200);
-  }
-
-  /** Puts the point into its controls. */
-  private showPoint(state: State): void {
-    const spheres = state.tab === "spheres";
-    put("point-x", spheres ? state.point[0] : this.system.value(state.across));
-    put("point-y", spheres ? state.point[1] : this.system.value(state.up));
-  }
-
-  /** Puts the state into all other controls. */
-  private showControls(state: State): void {
-    document.body.dataset.tab = state.tab;
-    const spheres = state.tab === "spheres";
-    for (const tab of TABS) {
-      const button = byId<HTMLButtonElement>(`tab-${tab}`);
-      button.setAttribute("aria-selected", String(tab === state.tab));
-      button.tabIndex = tab === state.tab ? 0 : -1;
-    }
-    put("preset", this.preset);
-    byId("caption").textContent = presetOf(this.preset).caption;
-    put("axes", state.axes);
-    const quantities = spheres ? OF_SPHERES : quantitiesOf(this.system);
-    const choice = byId<HTMLSelectElement>("quantity");
-    const names = quantities.map((it) => it.name).join();
-    if (choice.dataset.names !== names) {
-      choice.dataset.names = names;
-      choice.replaceChildren(...quantities.map((it) => make("option", { value: it.id }, it.name)));
-    }
-    put("quantity", spheres ? state.quantity : state.colour);
-    const [x, y] = spheres ? [state.x, state.y] : [state.sx, state.sy];
-    for (const [id, value] of [
-      ["x-low", x.low],
-      ["x-high", x.high],
-      ["y-low", y.low],
-      ["y-high", y.high],
-    ] as const)
-      put(id, value);
-    byId<HTMLInputElement>("x-log").checked = x.log;
-    byId<HTMLInputElement>("y-log").checked = y.log;
-    const [one, other] = this.axisNames(state);
-    for (const label of document.querySelectorAll("[data-axis]")) {
-      label.textContent = (label as HTMLElement).dataset.axis === "x" ? one : other;
-    }
-    for (const id of ["boundaries", "points", "limits"] as const)
-      byId<HTMLInputElement>(id).checked = state[id];
-    put("law", state.law);
-    // Bodies yield from a = 1 on.
-    const yields = this.laws.find((it) => it.name === state.law)?.law.damping === "yielding";
-    byId<HTMLInputElement>("damping").max = yields ? "20" : "1";
-    for (const id of SLIDERS) {
-      put(id, state[id]);
-      put(`${id}-number`, state[id]);
-    }
-    put("alpha", state.alpha === 2 / 7 ? "2/7" : state.alpha);
-    const { other: second, ...first } = state.bodies;
-    for (const [key, value] of Object.entries(first)) put(key, value);
-    for (const [key, value] of Object.entries(second ?? {})) put(`other-${key}`, value);
-    byId<HTMLInputElement>("other").checked = second !== null;
-    const law = this.laws.find((it) => it.name === state.law);
-    byId<HTMLInputElement>("tangential").disabled = byId<HTMLInputElement>(
-      "tangential-number",
-    ).disabled = law?.name === "paper";
-    byId("equations").textContent = law ? `${law.equations}. The spring ${law.energy}.` : "";
-    document.body.dataset.axes = state.axes;
-    byId("pull").hidden = !isAdhesive(state.law);
-    byId("pin").textContent = state.pinned ? "Unpin" : "Pin to compare";
-    byId("letters").hidden = !(state.points && spheres);
-    if (state.points && byId("letters").childElementCount !== this.places.letters.length) {
-      byId("letters").replaceChildren(
-        ...this.places.letters.map(({ name, ratio }) =>
-          make(
-            "button",
-            { type: "button", click: () => this.toLetter(ratio), "aria-label": `point ${name}` },
-            name,
-          ),
-        ),
-      );
-    }
-  }
-
-  private toLetter(ratio: number): void {
-    const [ofX, ofY] = units(this.store.state);
-    this.store.change({ point: [rounded(LINE.kappa / ofX), rounded(ratio / LINE.ratio / ofY)] });
   }
 
   private showLegend(): void {
@@ -332,7 +197,7 @@ class Page {
         `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
   }
 
-  private async copy(words: string, what: string): Promise<void> {
+  async copy(words: string, what: string): Promise<void> {
     try {
       await navigator.clipboard.writeText(words);
       this.say(`${what}: copied`);
@@ -366,7 +231,7 @@ class Page {
   }
 
   /** Writes a file by the name of its button. */
-  private write(what: string): Promise<void> {
+  write(what: string): Promise<void> {
     const {
       store: { state },
       plane,
@@ -374,190 +239,13 @@ class Page {
       system,
     } = this;
     const spheres = state.tab === "spheres";
-    const axes = this.axisNames(state);
+    const axes = axisNames(state);
     const fields = spheres
       ? ["eps_t", "contact_time", "energy_lost", "eps_n"]
       : quantitiesOf(system)
           .slice(2)
           .map((it) => it.name);
     return write(what, { state, plane, contact, system, axes, fields });
-  }
-
-  private axisNames(state: State): [string, string] {
-    if (state.tab === "system") return [state.across, state.up];
-    const [one, other] = AXES[state.axes];
-    return [one.symbol, other.symbol];
-  }
-
-  private wire(): void {
-    const { store } = this;
-    const on = (id: string, type: string, act: (input: HTMLInputElement) => void) =>
-      byId(id).addEventListener(type, (event) => act(event.target as HTMLInputElement));
-    const choice = byId<HTMLSelectElement>("preset");
-    choice.append(...PRESETS.map(({ id, name }) => make("option", { value: id }, name)));
-    on("preset", "change", ({ value }) => this.go(presetOf(value).state, value));
-    TABS.forEach((tab, place) => {
-      const button = byId(`tab-${tab}`);
-      button.onclick = () => store.change({ tab });
-      button.onkeydown = ({ key }) => {
-        const to = { ArrowLeft: place - 1, ArrowRight: place + 1, Home: 0, End: -1 };
-        const next = key in to && TABS.at(to[key as keyof typeof to] % TABS.length);
-        if (!next) return;
-        store.change({ tab: next });
-        byId(`tab-${next}`).focus();
-      };
-    });
-    on("axes", "change", ({ value }) => {
-      const axes = value as Axes;
-      const { x, y, point } = WINDOWS[axes];
-      store.change({ axes, pinned: null, ...(x && y && point ? { x, y, point } : {}) });
-    });
-    on("quantity", "change", ({ value }) =>
-      store.change(
-        store.state.tab === "spheres"
-          ? { quantity: value as Quantity }
-          : { colour: value as Quantity },
-      ),
-    );
-    const axisOf = (key: "x" | "y"): [keyof State, Axis] => {
-      const { tab } = store.state;
-      const name = tab === "spheres" ? key : (`s${key}` as "sx" | "sy");
-      return [name, store.state[name]];
-    };
-    for (const key of ["x", "y"] as const) {
-      for (const end of ["low", "high"] as const) {
-        on(`${key}-${end}`, "change", (input) => {
-          const [name, axis] = axisOf(key);
-          const value = typed(input.value);
-          const next = { ...axis, [end]: value };
-          if (
-            value !== undefined &&
-            next.low < next.high &&
-            (next.low > 0 || !axis.log) &&
-            (next.low >= 0 || store.state.tab === "system")
-          )
-            store.change({ [name]: next });
-          input.value = String(axisOf(key)[1][end]);
-        });
-      }
-      on(`${key}-log`, "change", ({ checked }) => {
-        const [name, axis] = axisOf(key);
-        if (checked && axis.high <= 0) return this.showNow();
-        store.change({
-          [name]: {
-            ...axis,
-            log: checked,
-            low: checked && axis.low <= 0 ? axis.high / 1000 : axis.low,
-          },
-        });
-      });
-    }
-    on("point-x", "change", (input) => this.typePoint(0, input));
-    on("point-y", "change", (input) => this.typePoint(1, input));
-    for (const id of ["boundaries", "points", "limits"] as const)
-      on(id, "change", ({ checked }) => store.change({ [id]: checked }));
-    on("law", "change", ({ value }) => {
-      const law = this.laws.find((it) => it.name === value);
-      const patch: Partial<State> = { law: value };
-      if (value === "paper") patch.tangential = 0;
-      if (law?.law.damping === "none") patch.damping = 0;
-      store.change(patch);
-    });
-    for (const id of SLIDERS) {
-      on(id, "input", ({ value }) => store.change({ [id]: Number(value) }));
-      on(`${id}-number`, "change", (input) => {
-        const value = typed(input.value);
-        if (value !== undefined && value >= 0 && (id !== "dynamic" || value <= 1))
-          store.change({ [id]: value });
-        input.value = String(store.state[id]);
-      });
-    }
-    on("alpha", "change", (input) => {
-      const value = typed(input.value);
-      if (value !== undefined && value > 0 && value <= 1) store.change({ alpha: value });
-      this.showNow();
-    });
-    const body = (id: string, change: (bodies: Bodies, value: number) => Bodies) =>
-      on(id, "change", (input) => {
-        const value = typed(input.value);
-        if (value !== undefined) store.change({ bodies: change(store.state.bodies, value) });
-      });
-    const { other: _, ...one } = store.state.bodies;
-    for (const key of Object.keys(one)) body(key, (bodies, value) => ({ ...bodies, [key]: value }));
-    for (const key of BALL)
-      body(`other-${key}`, ({ other, ...one }, value) => ({
-        ...one,
-        other: { ...(other ?? ballOf(one)), [key]: value },
-      }));
-    on("other", "change", ({ checked }) => {
-      const { bodies } = store.state;
-      store.change({ bodies: { ...bodies, other: checked ? ballOf(bodies) : null } });
-    });
-    byId("pin").onclick = () =>
-      store.change({ pinned: store.state.pinned ? null : pin(store.state) });
-    byId("home").onclick = () => {
-      const { x, y, axes } = presetOf(this.preset).state;
-      store.change(store.state.tab === "spheres" ? { x, y, axes } : this.system.home());
-    };
-    byId("undo").onclick = () => store.undo();
-    byId("redo").onclick = () => store.redo();
-    byId("link").onclick = () => void this.copy(this.link(), "link");
-    byId("start-tour").onclick = () => tour((state, preset) => this.go(state, preset));
-    for (const button of document.querySelectorAll<HTMLElement>("[data-write]")) {
-      button.onclick = () => void this.write(button.dataset.write ?? "");
-    }
-    const help = byId<HTMLDialogElement>("help");
-    byId("show-help").onclick = () => help.showModal();
-    byId("close-help").onclick = () => help.close();
-    window.addEventListener("hashchange", () => {
-      const { state, preset } = decoded(location.hash);
-      this.go(state, preset);
-    });
-    window.addEventListener("keydown", (event) => this.key(event));
-    byId("told").textContent = HINT;
-  }
-
-  private typePoint(place: 0 | 1, input: HTMLInputElement): void {
-    const { state } = this.store;
-    const value = typed(input.value);
-    const now: [number, number] =
-      state.tab === "spheres"
-        ? [...state.point]
-        : [this.system.value(state.across), this.system.value(state.up)];
-    if (value !== undefined && (value >= 0 || state.tab === "system")) {
-      now[place] = value;
-      this.movePoint(now);
-    }
-    input.value = String(now[place]);
-  }
-
-  private key(event: KeyboardEvent): void {
-    const { target } = event;
-    const typing =
-      target instanceof HTMLInputElement ||
-      target instanceof HTMLTextAreaElement ||
-      target instanceof HTMLSelectElement;
-    if (typing) return;
-    const key = event.key.toLowerCase();
-    if ((event.ctrlKey || event.metaKey) && key === "z") {
-      event.shiftKey ? this.store.redo() : this.store.undo();
-      event.preventDefault();
-      return;
-    }
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const acts: Record<string, () => void> = {
-      b: () => this.store.change({ boundaries: !this.store.state.boundaries }),
-      p: () => byId("pin").click(),
-      h: () => byId("home").click(),
-      l: () => byId("link").click(),
-      t: () => byId("start-tour").click(),
-      "?": () => byId("show-help").click(),
-      " ": () => byId("play").click(),
-    };
-    const act = acts[key];
-    if (!act || (key === " " && target instanceof HTMLButtonElement)) return;
-    act();
-    event.preventDefault();
   }
 
   /** What tests read. */
@@ -573,18 +261,10 @@ class Page {
   }
 }
 
-/** Puts a value into a control, unless it is being typed. */
-function put(id: string, value: string | number): void {
-  const input = byId<HTMLInputElement | HTMLSelectElement>(id);
-  if (input !== document.activeElement || input.type === "range") input.value = String(value);
-}
-
 /** The view with which the page was written. */
 function ownView(): string {
   return document.querySelector<HTMLMetaElement>("meta[name=stickslip-view]")?.content ?? "";
 }
-
-const HINT = "Drag the point; wheel or pinch to zoom; Shift and drag to move the window.";
 
 async function start(): Promise<void> {
   try {

@@ -1,6 +1,7 @@
 // What the plane shows of a state: of collisions, and of a system.
 
-import type { AxisName, Mark, PlaneModel } from "./plane";
+import type { AxisName } from "./axes";
+import type { Mark, PlaneModel } from "./plane";
 import { OF_SPHERES, ofSystem, type Shown } from "./quantities";
 import { scene, type Axes, type State } from "./state";
 import { textOf, type SystemView } from "./system";

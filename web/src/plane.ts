@@ -1,5 +1,6 @@
 // The plane: a map as colours, with axes, boundaries, regions, and a point that one drags.
 
+import { BOTTOM, drawAxes, LEFT, RIGHT, TOP, type AxisName } from "./axes";
 import { byId, fit, onceAFrame, sizeOf } from "./dom";
 import type { Crew, Hand } from "./crew";
 import { listen } from "./gestures";
@@ -7,15 +8,9 @@ import { Mapping } from "./mapping";
 import { rounded, short } from "./number";
 import { CanvasPen, type Path, type Pen } from "./pen";
 import { words, type Shown } from "./quantities";
-import { part, stretched, ticks, value } from "./scale";
+import { part, stretched, value } from "./scale";
 import { theme } from "./theme";
 import type { Answer, Atlas, Axis, Region, SceneRequest } from "./types";
-
-export interface AxisName {
-  symbol: string;
-  name: string;
-  unit: string;
-}
 
 /** A letter, a curve or a mark that the page adds. */
 export interface Mark {
@@ -57,12 +52,6 @@ interface Paths {
   regions: Path2D[];
   lines: Path2D[];
 }
-
-/** Room around the map, in pixels. */
-const LEFT = 58;
-const RIGHT = 14;
-const TOP = 12;
-const BOTTOM = 46;
 
 const DASHES: Record<string, number[]> = {
   "stick-graze": [6, 4],
@@ -431,7 +420,7 @@ export class Plane {
       }
       this.drawMarks(pen, model);
     });
-    this.drawAxes(pen, model, across, down);
+    drawAxes(pen, model, [across, down]);
   }
 
   private drawBoundaries(pen: Pen, atlas: Atlas): void {
@@ -487,74 +476,6 @@ export class Plane {
     pen.disc(x, y, 9, "rgba(255,255,255,0.35)", { colour: "#fff", width: 3.5 });
     pen.disc(x, y, 9, "rgba(0,0,0,0)", { colour: "#111", width: 1.6 });
     pen.disc(x, y, 2.2, "#111");
-  }
-
-  private drawAxes(pen: Pen, model: PlaneModel, across: number, down: number): void {
-    const { ink, faint } = theme();
-    const [horizontal, vertical] = model.names;
-    const bottom = TOP + down;
-    const frame: Path = [
-      [LEFT, TOP],
-      [LEFT + across, TOP],
-      [LEFT + across, bottom],
-      [LEFT, bottom],
-      [LEFT, TOP],
-    ];
-    pen.line(frame, { colour: faint, width: 1 });
-    let free = -Infinity;
-    for (const { value, label } of ticks(model.scene.x, across / 75)) {
-      const x = LEFT + part(model.scene.x, value) * across;
-      pen.line(
-        [
-          [x, bottom],
-          [x, bottom + (label ? 6 : 3)],
-        ],
-        { colour: ink },
-      );
-      const half = label.length * 3.6;
-      if (!label || x - half < free || x + half > LEFT + across + RIGHT) continue;
-      free = x + half + 6;
-      pen.text(label, x, bottom + 19, { colour: ink, align: "center" });
-    }
-    for (const { value, label } of ticks(model.scene.y, down / 55)) {
-      const y = TOP + (1 - part(model.scene.y, value)) * down;
-      pen.line(
-        [
-          [LEFT, y],
-          [LEFT - (label ? 6 : 3), y],
-        ],
-        { colour: ink },
-      );
-      if (label) pen.text(label, LEFT - 9, y + 4, { colour: ink, align: "right" });
-    }
-    for (const { at, name } of model.notches) {
-      const x = LEFT + part(model.scene.x, at[0]) * across;
-      if (x < LEFT || x > LEFT + across) continue;
-      pen.area(
-        [
-          [x, bottom - 1],
-          [x - 4, bottom - 8],
-          [x + 4, bottom - 8],
-        ],
-        "#111",
-        { colour: "#fff", width: 1 },
-      );
-      if (name)
-        pen.text(name, x, bottom - 11, { colour: "#111", size: 11, align: "center", halo: "#fff" });
-    }
-    const caption = ({ symbol, name, unit }: AxisName) =>
-      [name === symbol ? "" : name, symbol, unit ? `in ${unit}` : ""].filter(Boolean).join(" ");
-    pen.text(caption(horizontal), LEFT + across / 2, bottom + 38, {
-      colour: ink,
-      align: "center",
-      size: 13,
-    });
-    pen.text(caption(vertical), 14, TOP + down / 2, {
-      colour: ink,
-      align: "center",
-      size: 13,
-      up: true,
-    });
   }
 
   /** The size of the canvas, for files. */

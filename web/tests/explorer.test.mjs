@@ -243,7 +243,7 @@ ofPage("every file can be read", "", async (page) => {
     .split("\n");
   assert.equal(
     course[0],
-    "time,compression,normal_velocity,normal_force,spring,tangential_force,velocity,sliding",
+    "time,compression,normal_velocity,normal_force,spring,tangential_force,velocity,sliding,limit",
   );
   assert.equal(course.length, 1 + 1001 + 6);
   assert.ok(

@@ -256,11 +256,11 @@ impl Spheres {
                 snapshot.compression,
                 snapshot.normal_velocity,
                 snapshot.normal_force,
-                snapshot.limit,
                 snapshot.spring,
                 snapshot.tangential_force,
                 snapshot.velocity,
                 sliding,
+                snapshot.limit,
             ];
             numbers.extend(moment);
         }

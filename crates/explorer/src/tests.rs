@@ -49,7 +49,7 @@ fn bodies_that_adhere_may_stay_together() {
     // Coulomb's limit is the elastic force and twice the pull-off.
     assert!(state.course([10.0, 1.0], 50) > 50);
     for moment in state.numbers.chunks(MOMENT) {
-        assert!((moment[4] - moment[3] - 1.0).abs() < 1e-9, "{moment:?}");
+        assert!((moment[8] - moment[3] - 1.0).abs() < 1e-9, "{moment:?}");
     }
     adhere["scene"]["damping"] = json!(2.0);
     ask(&mut state, &adhere);

@@ -101,7 +101,9 @@ fn rooms(n: usize, end: f64) {
 fn main() {
     println!("| | events | right-hand sides | guards | bounds | time in ms |");
     println!("|---|---|---|---|---|---|");
-    balls(200);
+    for n in [1, 10, 100, 200, 1000] {
+        balls(n);
+    }
     rooms(50, 10.0);
     for n in [1, 2, 5, 20, 100, 250, 500] {
         rooms(n, 4.0);
