@@ -28,7 +28,7 @@ def oscillator_regions() -> object:
 def _around() -> stickslip.HybridFamily:
     """A boundary around the origin, with long runs."""
     text = f"parameter a = 1, b = 0\nstate r = 0\n{OSCILLATOR.format(9)}\nr' = a*a + b*b"
-    return stickslip.HybridFamily.of(stickslip.system(f"{text}\nwhen r > 9 -> end"), "a", "b")
+    return stickslip.HybridFamily.of(stickslip.system(f"{text}\nwhen r rises through 9"), "a", "b")
 
 
 # Each takes minutes, so that a deaf one would not come back within the time of the tests.
