@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import stickslip
+import xarray  # noqa: F401  Imported here, it is not interrupted.
 from results import BALL, WINDOW, family, family_of_functions, of, table
 
 ORBITS = Path(__file__).parents[2] / "examples" / "orbits"
