@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import _solution_pictures
 from stickslip._progress import Progress, reporting
 from stickslip._shown import Shown, html_table
 from stickslip._tabular import Columns, Tabular, flat
@@ -61,6 +60,8 @@ class Sensitivities(Tabular, Shown):
 
         ax: axes to draw in, or None for new ones. line: properties of all lines.
         """
+        from stickslip import _solution_pictures
+
         return _solution_pictures.sensitivities(self, ax, line)
 
 

@@ -309,8 +309,8 @@ class HybridFamily:
                 self._recorded.compare_start(values)
                 try:
                     system = self._recorded.system._native
-                    given = (None, None, None)
-                    found = system.run(list(values), given, self._end, self._settings, np.empty(0), False)
+                    given = (list(values), (None, None, None), self._end, self._settings)
+                    found = system.run(*given, np.empty(0), False, compared=True)
                 except (ValueError, _native.ComputationError):
                     continue
                 self._recorded.compare(found, values)
@@ -436,6 +436,8 @@ class HybridFamily:
         between: ArrayLike,
         monitors: Sequence[Callable[[float, float], float]] = (),
         options: TraceOptions | None = None,
+        *,
+        progress: Progress | None = None,
     ) -> Followed | None:
         """Follows the boundary between two points in both directions, until it ends at a vertex,
         leaves the window, or closes.
@@ -443,7 +445,8 @@ class HybridFamily:
         x, y: the window. between: two points with different itineraries, shape (2, 2). None if
         their itineraries are the same, or if no margin vanishes where the itinerary changes.
         monitors: functions of the two parameters whose values are recorded and whose zeros along
-        the boundary are solved for; NaN says that there is no value.
+        the boundary are solved for; NaN says that there is no value. progress: as in
+        `trace_family`.
         """
         window = (_interval(x, "x"), _interval(y, "y"))
         places = real("between", between)
@@ -456,7 +459,9 @@ class HybridFamily:
         self._compare(places[:, 0], places[:, 1])
         text = _json(asdict(options or TraceOptions()))
         (one, two), (three, four) = places.tolist()
-        found = self._native.follow(window, text, ((one, two), (three, four)), functions)
+        pair = ((one, two), (three, four))
+        with reported(progress, f"boundary of {self.name}") as report:
+            found = self._native.follow(window, text, pair, functions, report)
         if found is None:
             return None
         sides = [_label(one, self.guards) for one in found["sides"]]

@@ -9,23 +9,26 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from os import PathLike
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _attractors, _native, _orbit_regions, _orbits
-from stickslip._attractors import Basins, Diagram, Exponents
+from stickslip import _native
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
-from stickslip._orbit_regions import OrbitRegions
-from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._solutions import Beside, Names, Solution, note_interruption
-from stickslip._collisions import _threads
-from stickslip._studies import Study, _study
+
+# A run needs none of these, which take longer to import than numpy's own functions.
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from stickslip._attractors import Basins, Diagram, Exponents
+    from stickslip._orbit_regions import OrbitRegions
+    from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
+    from stickslip._studies import Study
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -223,6 +226,8 @@ class FormulaSystem:
         >>> round(orbit.period, 12), orbit.admissible, orbit.stable
         (2.197224577336, True, True)
         """
+        from stickslip import _orbits
+
         return _orbits.orbit(
             self, itinerary, (start, mode, time), durations, settle, near, parameters, progress
         )
@@ -267,6 +272,8 @@ class FormulaSystem:
         [('flip', 0.029654967)]
         """
         steps = (longest_step, most_points)
+        from stickslip import _orbits
+
         return _orbits.branch(self, orbit, parameter, interval, steps, progress)
 
     def resumed(
@@ -284,6 +291,8 @@ class FormulaSystem:
         Raises ValueError if a value is wrong, or if the branch is closed.
         """
         steps = (longest_step, most_points)
+        from stickslip import _orbits
+
         return _orbits.resumed(self, branch, interval, steps, progress)
 
     def read_branch(self, path: str | Path) -> Branch:
@@ -293,6 +302,8 @@ class FormulaSystem:
         Raises ValueError if the file has no branch of this system, or has changed since it was
         written.
         """
+        from stickslip import _orbits
+
         return _orbits.read_branch(self, path)
 
     def curve(
@@ -313,6 +324,8 @@ class FormulaSystem:
         boundary,
         and ComputationError if the curve does not begin.
         """
+        from stickslip import _orbits
+
         return _orbits.curve(self, special, parameters, (x, y), longest_step, progress)
 
     def orbit_regions(
@@ -352,6 +365,8 @@ class FormulaSystem:
         >>> found.objection, found.at(0.011, 0.7), found.at(0.02, 0.7)
         (None, (), (0,))
         """
+        from stickslip import _orbit_regions
+
         return _orbit_regions.regions(self, orbit, parameters, (x, y), cells, progress)
 
     def switched(self, branch: Branch, special: SpecialOrbit, *, aside: float = 0.05) -> Orbit:
@@ -363,6 +378,8 @@ class FormulaSystem:
         Raises ValueError if a value is wrong, or for other kinds, ComputationError if none is
         found.
         """
+        from stickslip import _orbits
+
         return _orbits.switched(self, branch, special, aside)
 
     def section(
@@ -397,6 +414,8 @@ class FormulaSystem:
         ([1.0, 2.0, 3.0], [0.375, 0.5625, 0.65625])
         """
         begins = (start, mode, begin)
+        from stickslip import _attractors
+
         return _attractors.section(self, rule, (skip, time), begins, parameters, progress)
 
     def diagram(
@@ -419,6 +438,8 @@ class FormulaSystem:
         """
         begins, span = (start, mode, begin), (skip, time)
         over = (parameter, values)
+        from stickslip import _attractors
+
         return _attractors.diagram(self, over, rule, span, begins, parameters, progress)
 
     def exponents(
@@ -441,6 +462,8 @@ class FormulaSystem:
         [-2.0]
         """
         begins = (start, mode, begin)
+        from stickslip import _attractors
+
         return _attractors.exponents(self, (skip, time), begins, parameters, progress)
 
     def basins(
@@ -461,6 +484,8 @@ class FormulaSystem:
         less than 1e-3 of their size are one. The rest is as in `section`.
         """
         begins = (start, mode, begin)
+        from stickslip import _attractors
+
         return _attractors.basins(self, components, (x, y), settle, begins, parameters, progress)
 
     @cached_property
@@ -491,6 +516,9 @@ class FormulaSystem:
         >>> bool(table.columns["same_events"].all())
         True
         """
+        from stickslip._collisions import _threads
+        from stickslip._studies import _study
+
         rerun = self._arguments((t_span, y0, mode), parameters)
         values, begin, end, _ = rerun
         with reported(progress, f"converge {name}") as report:
@@ -589,4 +617,5 @@ def read(path: str | PathLike[str]) -> FormulaSystem:
 
     Raises OSError if it cannot be read, and ValueError if it is no system.
     """
-    return FormulaSystem(Path(path).read_text(encoding="utf-8"))
+    with open(path, encoding="utf-8") as file:
+        return FormulaSystem(file.read())

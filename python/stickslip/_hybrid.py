@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._compiled import Compiled, Function, _number
 from stickslip._progress import Progress, Report, reporting
-from stickslip._recorded import Recorded
+from stickslip._recorded import recording
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
 from stickslip._solutions import Beside, Names, Solution, variable_columns
 from stickslip._symbols import CannotRecord
@@ -192,7 +192,7 @@ def _try_recorded(job: _Job, report: Report | None) -> tuple[Solution | None, st
         return None, "the run goes backwards"
     try:
         names, values = list(job.given), list(job.given.values())
-        recorded = Recorded(job.table, (first, start), job.state, names, values)
+        recorded = recording(job.table, (first, start), job.state, names, values)
         return recorded.solve(job.begin, job.settings, job.times, job.dense, report), ""
     except (CannotRecord, _native.ComputationError) as reason:
         return None, str(reason)
@@ -235,6 +235,23 @@ class _Table:
                 self.event_names.append(guard.name)
         #: The name of each guard of each mode, by its place.
         self.places: list[list[str]] = []
+
+    @property
+    def formed_of(self) -> list[Any]:
+        """All of which formulas are made. Those of modes are told apart by their places, too."""
+        found = [self.plain, *self.args, len(self.args)]
+        sources = list(self.events)
+        for mode in self.system_modes:
+            found += [mode.name, mode.right_hand_side, len(mode._sources)]
+            sources += mode._sources
+        for source in sources:
+            found += [source.function, len(source.guards), *source.guards]
+        if not self.plain:
+            found += [id(mode.right_hand_side) for mode in self.system_modes]
+            found += [id(source.function) for source in sources]
+            of_modes = sources[len(self.events) :]
+            found += [id(guard) for source in of_modes for guard in source.guards]
+        return found
 
     @property
     def has_compiled(self) -> bool:

@@ -366,7 +366,8 @@ def _compare(recorded: Recorded, rows: Any, states: Any, runs: _Runs) -> None:
             begin = (None, runs.begin[1], state)
             native = recorded.system._native
             nothing = np.empty(0)
-            found = native.run(list(values), begin, runs.end, runs.settings, nothing, False)
+            given = (list(values), begin, runs.end, runs.settings)
+            found = native.run(*given, nothing, False, compared=True)
             recorded.compare(found, values)
         except CannotRecord as reason:
             raise ValueError(f"many runs are those of formulas, but {reason}") from None

@@ -65,8 +65,11 @@ class Tape:
     def binary(self, name: str, a: int, b: int) -> int: ...
     def select(self, condition: int, above: int, below: int) -> int: ...
     def evaluate(
-        self, formulas: list[int], t: float, y: list[float], parameters: list[float] = ...
-    ) -> list[float]: ...
+        self,
+        formulas: list[int],
+        places: list[tuple[float, list[float]]],
+        parameters: list[float],
+    ) -> list[list[float]]: ...
     def text(self, formulas: list[int], n: int) -> list[str]: ...
     def zero_order(
         self,
@@ -116,6 +119,7 @@ class FormulaSystem:
         times: _Floats | None,
         dense: bool,
         progress: _Report | None = None,
+        compared: bool = False,
     ) -> dict[str, Any]: ...
     def converge(
         self,
@@ -359,6 +363,7 @@ class HybridFamily:
         options: str,
         between: _Window,
         monitors: list[Callable[[float, float], float]],
+        progress: _Report | None,
     ) -> dict[str, Any] | None: ...
 
 _ChangeFields: TypeAlias = tuple[

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from stickslip._compiled import Compiled, Function
 from stickslip._derivatives import Rerun
 from stickslip._progress import Report, keeping
 from stickslip._recording import Tape
+from stickslip._signatures import Signer, Unsigned
 from stickslip._solutions import (
     Beside,
     Solution,
@@ -25,6 +26,8 @@ from stickslip._symbols import CannotRecord, Symbol, Symbols, array_of
 from stickslip._systems import Guard, Mode, _Clock, _Source
 from stickslip._formulas import FormulaSystem
 
+#: A time, and a state with variables behind it.
+Place: TypeAlias = tuple[float, list[float]]
 #: Events at which formulas are compared with their functions.
 MOST_PLACES = 8
 
@@ -53,7 +56,7 @@ class Recorded:
             raise CannotRecord("there is no state")
         if table.apart:
             raise CannotRecord("guards of several modes are counted until the run ends")
-        self.table, self.state, self.start = table, state, begin[1]
+        self.table, self.state, self.start, self.names = table, state, begin[1], list(names)
         self.tape = Tape()
         native = self.tape.native
         symbols = [Symbol(self.tape, native.parameter(place)) for place in range(len(names))]
@@ -64,7 +67,7 @@ class Recorded:
         variables = (table.variables.tuple_of(self.held, Symbols),) if held else ()
         self.behind = (*symbols, *table.args)
         self.args = (*variables, *self.behind)
-        self.values = list(values) if values is not None else None if names else []
+        values = list(values) if values is not None else None if names else []
         self.beginning = beginning
         surfaces = table.surfaces.items()
         self.surfaces = {
@@ -81,7 +84,10 @@ class Recorded:
         self.transitions: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         self.rests: list[dict[int, tuple[str, Callable[..., Any], int, list[int] | None]]] = []
         self.sets: list[dict[int, tuple[str, Callable[..., Any]]]] = []
-        modes = [self.mode(mode) for mode in table.system_modes]
+        #: Events that may start from a zero, whose order depends on the start: rule, label, formula
+        #: and slopes.
+        self.from_zero: list[tuple[dict[str, Any], str, int, list[int]]] = []
+        self.modes = [self.mode(mode) for mode in table.system_modes]
         self.first = begin[0]
         #: What chooses the first mode, and that where it is below 0.
         self.otherwise: tuple[int, int] | None = None
@@ -91,20 +97,67 @@ class Recorded:
             (what, one, self.formulas(what, one, 1, at, args))
             for what, one in ((f"requires {n}", one) for n, one in enumerate(required, 1))
         ]
-        if beginning is None:
-            first = [native.constant(value) for value in state.tolist()]
-        else:
-            first = self.begun(beginning, args, at)
-        first += [native.constant(value) for value in held]
-        self.from_start = first
+        begun = None if beginning is None else self.begun(beginning, args, at)
+        self._start(begin[1], state, values, begun)
+        self.names_of_run = replace(self.system._names, events=table.event_names)
+        if self.surfaces:
+            of_modes = [it for it in table.names for _ in range(self.width)]
+            self.names_of_run = replace(self.names_of_run, modes=of_modes)
+
+    def again(
+        self, table: Any, start: float, state: NDArray[np.float64], values: Sequence[float]
+    ) -> Recorded:
+        """The same formulas of functions that return the same, with another start, and with other
+        values of parameters."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__, table=table)
+        if table.plain:
+            (mode,), sources = table.system_modes, table.events
+            other.slopes = [[(row[0], mode.right_hand_side, *row[2:]) for row in self.slopes[0]]]
+            pairs = zip(self.guards[0], sources, strict=True)
+            other.guards = [[(row[0], source.function, row[2]) for row, source in pairs]]
+        if self.given != _bytes(start, state, values):
+            other._start(start, state, list(values))
+        return other
+
+    def _start(
+        self,
+        start: float,
+        state: NDArray[np.float64],
+        values: list[float] | None,
+        begun: list[int] | None = None,
+    ) -> None:
+        """Makes the system that starts there."""
+        native, variables = self.tape.native, self.table.variables
+        self.start, self.state, self.values = start, state, values
+        self.given = _bytes(start, state, values or [])
+        constants = [native.constant(value) for value in variables.flat.tolist()]
+        if begun is None:
+            begun = [native.constant(value) for value in state.tolist()]
+        self.from_start = begun + constants
         conditions = [formula for _, _, (formula,) in self.required]
-        given = (self.first, self.start, first, self.otherwise, conditions)
-        labels, surfaces = table.variables.labels, list(self.surfaces.items())
+        given = (self.first, start, self.from_start, self.otherwise, conditions)
+        modes = self.modes
+        if self.from_zero and values is not None:
+            orders = dict(self.orders(state.tolist(), values))
+            modes = [
+                (name, slopes, [orders.get(id(rule), rule) for rule in rules])
+                for name, slopes, rules in modes
+            ]
         try:
-            made = native.system(list(names), given, modes, labels, surfaces)
+            surfaces = list(self.surfaces.items())
+            made = native.system(self.names, given, modes, variables.labels, surfaces)
         except ValueError as reason:
             raise CannotRecord(str(reason)) from None
         self.system = FormulaSystem._of(made, list(self.surfaces))
+
+    def orders(self, state: list[float], values: list[float]) -> Iterator[tuple[int, Any]]:
+        """Rules, by their places, with the orders of the zeros from which they start."""
+        for rule, label, value, slopes in self.from_zero:
+            order = self.tape.native.zero_order(value, slopes, self.start, state, values)
+            if order >= 8:
+                raise CannotRecord(f"{label} is zero all the time at the start")
+            yield id(rule), rule | {"from_zero": order}
 
     def formulas(
         self,
@@ -230,13 +283,6 @@ class Recorded:
             after = after + changed
         else:
             after = self.with_held(after)
-        order = int(guard.from_zero)
-        if self.table.plain and not order and value is not None and self.values is not None:
-            state = self.state.tolist()
-            known = (self.start, state, self.values)
-            order = self.tape.native.zero_order(value, slopes, *known)
-            if order >= 8:
-                raise CannotRecord(f"{source.label} is zero all the time at the start")
         if value is not None and self.tape.native.value(value) is not None:
             raise CannotRecord(f"{source.label} never changes")
         times = guard.times if isinstance(guard, _Clock) else []
@@ -246,7 +292,7 @@ class Recorded:
         rest = None
         if guard.rest is not None:
             rest = self.rest(guard, f"the rest of {about}", place)
-        return {
+        rule = {
             "label": guard.name,
             "guard": value,
             "direction": guard.direction,
@@ -257,10 +303,13 @@ class Recorded:
             "after": after,
             "rest": rest,
             "terminal": int(guard.terminal),
-            "from_zero": order,
+            "from_zero": int(guard.from_zero),
             "priority": int(guard.priority),
             "sees_jumps": guard.sees_jumps,
         }
+        if self.table.plain and not rule["from_zero"] and value is not None:
+            self.from_zero.append((rule, source.label, value, slopes))
+        return rule
 
     def choice(self, what: str, transition: Callable[..., Any]) -> tuple[Any, list[int] | None]:
         """The mode to which a transition leads, and the formulas of the state behind it."""
@@ -338,17 +387,15 @@ class Recorded:
             return self._solution(found, dense, rerun)
 
         with keeping(until_now):
-            found = self.system._native.run(*rerun, times, dense, report)
+            found = self.system._native.run(*rerun, times, dense, report, True)
         self.compare(found, tuple(values))
         return self._solution(found, dense, rerun)
 
     def _solution(self, found: dict[str, Any], dense: bool, rerun: Rerun) -> Solution:
         beside = with_variables(found, self.table.variables)
-        names = replace(self.system._names, events=self.table.event_names)
         if self.surfaces:
-            names = replace(names, modes=[it for it in self.table.names for _ in range(self.width)])
             beside = self.with_sides(found, beside or Beside({}, {}, [], {}))
-        return self.system._solution(found, dense, rerun, names, beside)
+        return self.system._solution(found, dense, rerun, self.names_of_run, beside)
 
     def with_sides(self, found: dict[str, Any], beside: Beside) -> Beside:
         """What stands beside a solution, with the sides of surfaces."""
@@ -374,41 +421,46 @@ class Recorded:
             behind=beside.behind | behind,
         )
 
+    @np.errstate(all="ignore")
     def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that are not what their functions return with values of parameters."""
-        self.compare_start(values)
+        begun = self.begun_at(values)
+        places: dict[int, list[Place]] = {} if begun is None else {begun[0]: [begun[1]]}
         for t, mode, y in found["samples"]:
-            self.compare_at(mode // self.width, t, np.array(y), values)
+            places.setdefault(mode // self.width, []).append((t, y))
+        for mode, within in places.items():
+            self.compare_at(mode, within, values)
+        if found["event_times"].size:
+            self.compare_events(found, values)
+
+    def compare_events(self, found: dict[str, Any], values: tuple[float, ...]) -> None:
+        """Refuses what follows the first events, if it is not what functions return."""
         n = self.state.size
         before = found["event_before"].reshape(-1, n + len(self.held))
         after = found["event_after"].reshape(-1, n + len(self.held))
         left, guards = found["event_from"] // self.width, found["event_guards"] - self.front
         events = zip(left, guards, strict=True)
         for row, (mode, guard) in enumerate(list(events)[:MOST_PLACES]):
+            t = float(found["event_times"][row])
+            left_at, at = (t, before[row].tolist()), (t, after[row].tolist())
             if guard in self.resets[mode] and not (before[row] == after[row]).all():
                 what, reset = self.resets[mode][guard]
-                at = (float(found["event_times"][row]), before[row])
-                self.same(what, reset, at, values, after[row, :n].tolist())
+                self.same(what, reset, left_at, values, at[1][:n])
             if guard in self.sets[mode] and not (before[row] == after[row]).all():
                 what, setter = self.sets[mode][guard]
-                at = (float(found["event_times"][row]), before[row])
-                self.same(what, setter, at, values, after[row, n:].tolist())
+                self.same(what, setter, left_at, values, at[1][n:])
             if guard in self.rests[mode]:
                 what, rest, rests_in, formulas = self.rests[mode][guard]
-                at = (float(found["event_times"][row]), after[row])
                 to, state = self.call(rest, at, values)
                 if (mode if to is None else to) != rests_in:
-                    raise CannotRecord(f"{what}: at t = {at[0]!r} it leads to another mode")
+                    raise CannotRecord(f"{what}: at t = {t!r} it leads to another mode")
                 if state is not None and formulas is not None:
                     given = partial(lambda state, *_: state, state)
-                    native = self.tape.native
-                    formulas = formulas[:n]
-                    now = native.evaluate(formulas, at[0], after[row].tolist(), list(values))
+                    (now,) = self.tape.native.evaluate(formulas[:n], [at], list(values))
                     self.same(what, given, at, values, now)
             if guard in self.transitions[mode] and found["outcome"] != "ended_by_guard":
                 what, transition = self.transitions[mode][guard]
-                t, y = float(found["event_times"][row]), before[row]
-                to, state = self.call(transition, (t, y), values)
+                to, state = self.call(transition, left_at, values)
                 target = found["event_to"][row] // self.width
                 if to is not None and to != target:
                     name = self.table.names[target]
@@ -418,61 +470,66 @@ class Recorded:
                     )
                 if state is not None:
                     given = partial(lambda state, *_: state, state)
-                    self.same(what, given, (t, y), values, after[row, :n].tolist())
+                    self.same(what, given, left_at, values, at[1][:n])
 
+    @np.errstate(all="ignore")
     def compare_start(self, values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that differ at the start."""
-        at = (self.start, np.append(self.state, self.table.variables.flat))
-        native = self.tape.native
+        begun = self.begun_at(values)
+        if begun is not None:
+            self.compare_at(begun[0], [begun[1]], values)
+
+    def begun_at(self, values: tuple[float, ...]) -> tuple[int, Place] | None:
+        """The mode, the time and the state where a run begins, if it does."""
+        at = (self.start, self.state.tolist() + self.table.variables.flat.tolist())
+        evaluate = partial(self.tape.native.evaluate, places=[at], parameters=list(values))
         for what, function, formulas in self.required:
-            found = native.evaluate(formulas, self.start, at[1].tolist(), list(values))
+            (found,) = evaluate(formulas)
             self.same(what, function, at, values, found)
             if not found[0] >= 0.0:
-                return
-        found = native.evaluate(self.from_start, self.start, at[1].tolist(), list(values))
+                return None
+        if self.beginning is None:
+            return self.first, at
+        (found,) = evaluate(self.from_start)
         first = self.first
         if self.otherwise is not None:
-            (choice,) = native.evaluate([self.otherwise[0]], self.start, [], list(values))
+            ((choice,),) = evaluate([self.otherwise[0]])
             first = self.otherwise[1] if choice < 0.0 else first
-        if self.beginning is not None:
-            transition = self.table.transition(self.beginning, "start")
-            to, state = self.call(transition, at, values)
-            if to is not None and to != first:
-                raise CannotRecord("start: it depends on more than t and y")
-            if state is not None:
-                given = partial(lambda state, *_: state, state)
-                self.same("start", given, at, values, found[: self.state.size])
-        self.compare_at(first, self.start, np.array(found), values)
+        transition = self.table.transition(self.beginning, "start")
+        to, state = self.call(transition, at, values)
+        if to is not None and to != first:
+            raise CannotRecord("start: it depends on more than t and y")
+        if state is not None:
+            given = partial(lambda state, *_: state, state)
+            self.same("start", given, at, values, found[: self.state.size])
+        return first, (self.start, found)
 
-    def compare_at(
-        self, mode: int, t: float, y: NDArray[np.float64], values: tuple[float, ...]
-    ) -> None:
-        native = self.tape.native
-        for what, function, formulas, signs in self.slopes[mode]:
-            found = native.evaluate(formulas, t, y.tolist(), list(values))
-            self.same(what, function, (t, y), values, found, signs)
-        for what, function, formulas in self.guards[mode]:
-            found = native.evaluate(formulas, t, y.tolist(), list(values))
-            self.same(what, function, (t, y), values, found)
+    def compare_at(self, mode: int, places: list[Place], values: tuple[float, ...]) -> None:
+        guards = ((*guard, None) for guard in self.guards[mode])
+        for what, function, formulas, signs in (*self.slopes[mode], *guards):
+            found = self.tape.native.evaluate(formulas, places, list(values))
+            for at, recorded in zip(places, found, strict=True):
+                self.same(what, function, at, values, recorded, signs)
 
     def call(
         self,
         function: Callable[..., Any],
-        at: tuple[float, NDArray[np.float64]],
+        at: Place,
         values: tuple[float, ...],
         signs: Any = None,
     ) -> Any:
         """What a function returns at a time, and at a state with variables behind it."""
+        t, y = at
         n = self.state.size
-        held = (self.table.variables.named(at[1][n:]),) if self.held else ()
+        held = (self.table.variables.named(np.array(y[n:])),) if self.held else ()
         signs = () if signs is None else (signs,)
-        return function(at[0], at[1][:n].copy(), *held, *signs, *values, *self.table.args)
+        return function(t, np.array(y[:n]), *held, *signs, *values, *self.table.args)
 
     def same(
         self,
         what: str,
         function: Function,
-        at: tuple[float, NDArray[np.float64]],
+        at: Place,
         values: tuple[float, ...],
         recorded: list[float],
         signs: Any = None,
@@ -481,12 +538,13 @@ class Recorded:
         t, _ = at
         assert not isinstance(function, Compiled)
         try:
-            with np.errstate(all="ignore"):
-                found = self.call(function, at, values, signs)
-                returned = np.asarray(found, dtype=float).reshape(-1).tolist()
+            found = self.call(function, at, values, signs)
+            returned = np.asarray(found, dtype=float).reshape(-1).tolist()
         except Exception as error:
             # Without formulas it says so itself, if it is called there.
             raise CannotRecord(f"{what}: {type(error).__name__} at t = {t!r}: {error}") from None
+        if returned == recorded:
+            return
         size = max([1.0, *(abs(value) for value in recorded if math.isfinite(value))])
         near = (
             a == b or (a != a and b != b) or abs(a - b) <= 1e-7 * abs(b) + 1e-10 * size
@@ -497,6 +555,44 @@ class Recorded:
                 f"{what}: at t = {t!r}{''.join(f', {value!r}' for value in values)} it returns "
                 f"{returned}, and its formulas {recorded}: it depends on more than t and y"
             )
+
+
+def _bytes(start: float, state: NDArray[np.float64], values: Sequence[float]) -> bytes:
+    """What tells starts apart, also zeros of another sign."""
+    return np.array([start, *values]).tobytes() + state.tobytes()
+
+
+#: What was recorded last, by the signatures of the functions, and what must live on for these.
+_KEPT: dict[Any, tuple[Recorded, list[Any], Iterator[int]]] = {}
+MOST_KEPT = 64
+#: Starts of the same formulas, each of which leaves its numbers on their tape.
+MOST_STARTS = 50
+
+
+def recording(
+    table: Any,
+    begin: tuple[int, float],
+    state: NDArray[np.float64],
+    names: Sequence[str],
+    values: Sequence[float],
+) -> Recorded:
+    """The formulas of a system, kept as long as all that its functions read is the same."""
+    given = (table, begin, state, names, values)
+    if table.variables or table.surfaces:
+        return Recorded(*given)
+    signer = Signer()
+    try:
+        key = signer.signature((state.size, begin[0], *names, table.formed_of))
+    except Unsigned:
+        return Recorded(*given)
+    kept = _KEPT.get(key)
+    if kept is not None and next(kept[2], 0):
+        return kept[0].again(table, begin[1], state, values)
+    made = Recorded(*given)
+    if len(_KEPT) >= MOST_KEPT and key not in _KEPT:
+        _KEPT.pop([*_KEPT][0], None)
+    _KEPT[key] = made, signer.kept, iter(range(MOST_STARTS, 0, -1))
+    return made
 
 
 def recorded(function: Function, n: int, args: tuple[Any, ...] = ()) -> list[str]:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native, _solution_pictures
+from stickslip import _native
 from stickslip._arrays import real
-from stickslip._axes import Panels, svg
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._libraries import library
 from stickslip._names import Named
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from xarray import Dataset
 
+    from stickslip._axes import Panels
     from stickslip._formulas import FormulaSystem
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -76,6 +76,8 @@ class DenseOutput:
         self, ax: Panels = None, *, components: Sequence[int] | None = None, **line: Any
     ) -> list[Axes]:
         """Draws the state in time with matplotlib, coloured by mode; see `Solution.plot`."""
+        from stickslip import _solution_pictures
+
         return _solution_pictures.dense(self, ax, components, line)
 
     def __repr__(self) -> str:
@@ -345,6 +347,8 @@ class Solution(Tabular):
         >>> height.get_ylabel(), height.get_legend().get_texts()[0].get_text()
         ('y0', 'event 0')
         """
+        from stickslip import _solution_pictures
+
         return _solution_pictures.solution(self, ax, components, line)
 
     _dimension = "time"
@@ -386,6 +390,9 @@ class Solution(Tabular):
         return DenseOutput(found, np.array(system.modes), found["start_time"])
 
     def _repr_svg_(self) -> str | None:
+        from stickslip import _solution_pictures
+        from stickslip._axes import svg
+
         count = min(len(self.y), _solution_pictures.MOST_PANELS)
         return svg(self.plot, count) if count else None
 

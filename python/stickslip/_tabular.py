@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -62,6 +61,8 @@ class Tabular:
 
 def write_parquet(table: Any, path: str | os.PathLike[str]) -> None:
     """Writes a `pyarrow.Table`, complete or not at all."""
+    from pathlib import Path
+
     parquet = library("pyarrow.parquet", "for to_parquet")
     file = Path(path)
     beside = file.with_name(f".{file.name}.{os.getpid()}.part")

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 import stickslip
-from results import BALL, family, of, table
+import xarray  # noqa: F401  Imported here, it is not interrupted.
+from results import BALL, WINDOW, family, family_of_functions, of, table
 
 ORBITS = Path(__file__).parents[2] / "examples" / "orbits"
 MANY = 60_000_000
@@ -23,6 +24,12 @@ def oscillator_regions() -> object:
     oscillator = stickslip.read(ORBITS / "oscillator.slip")
     orbit = oscillator.orbit(itinerary=["impact", "phase"])
     return oscillator.orbit_regions(orbit, ("w", "a"), (0.5, 1.5), (0.05, 1.2), cells=40)
+
+
+def _around() -> stickslip.HybridFamily:
+    """A boundary around the origin, with long runs."""
+    text = f"parameter a = 1, b = 0\nstate r = 0\n{OSCILLATOR.format(9)}\nr' = a*a + b*b"
+    return stickslip.HybridFamily.of(stickslip.system(f"{text}\nwhen r rises through 9"), "a", "b")
 
 
 # Each takes minutes, so that a deaf one would not come back within the time of the tests.
@@ -54,6 +61,7 @@ LONG: dict[str, Callable[[], object]] = {
     "labels": lambda: stickslip.HybridFamily.of(
         stickslip.system(f"parameter a = 1, b = 0\n{OSCILLATOR.format(3)}"), "a", "b"
     ).labels(np.linspace(1, 2, 3000), 1.0),
+    "follow": lambda: _around().follow((-2.0, 2.0), (-2.0, 2.0), [(0.0, 0.0), (1.5, 1.5)]),
     "times": lambda: stickslip.system("state x = 1\nx' = -x\nend = 1").solve(
         t_eval=np.linspace(0, 1, MANY)
     ),
@@ -152,6 +160,12 @@ def test_long_calls_report_their_progress() -> None:
         lambda progress: stickslip.map((1, 2), (1, 2), (9, 9), progress=progress),
         lambda progress: stickslip.impact(of("Bodies"), kappa, 0.5, progress=progress),
         lambda progress: family().labels(kappa / 6, 0.6, progress=progress),
+        lambda progress: family().follow(
+            *WINDOW, [(0.6, 0.55), (1.9, 0.75)], [lambda p, q: q - 0.65], progress=progress
+        ),
+        lambda progress: family_of_functions().follow(
+            *WINDOW, [(0.6, 0.55), (1.9, 0.75)], progress=progress
+        ),
         lambda progress: stickslip.system(BALL).sensitivities("restitution", progress=progress),
         lambda progress: recorded.sensitivities("y0", progress=progress),
         lambda progress: bouncing.orbit(settle=100.0, progress=progress),
@@ -183,6 +197,9 @@ def test_an_exception_of_progress_ends_the_call() -> None:
 
     with pytest.raises(RuntimeError, match="are enough"):
         stickslip.trace((0.5, 60), (0.1, 3), 0.3, progress=stop)
+    for one in (family(), family_of_functions()):
+        with pytest.raises(RuntimeError, match="are enough"):
+            one.follow(*WINDOW, [(0.6, 0.55), (1.9, 0.75)], progress=stop)
 
 
 if __name__ == "__main__":

@@ -544,6 +544,6 @@ def test_an_example_is_recorded_as_what_it_computes(name: str) -> None:
             t = float(called.t[column] + random.uniform(0, 1e-3))
             y = called.y[:, column] + random.uniform(-1e-3, 1e-3, size.size) * size
             expected = np.asarray(function(t, y.copy(), *one.args), dtype=float).reshape(-1)
-            values = tape.native.evaluate(formulas, t, y.tolist())
+            (values,) = tape.native.evaluate(formulas, [(t, y.tolist())], [])
             near = 1e-12 * np.abs(expected).max()
             np.testing.assert_allclose(values, expected, rtol=1e-11, atol=near)

@@ -350,7 +350,7 @@ def test_idioms_are_what_they_compute(number: int) -> None:
     for _ in range(100):
         t, y = float(random.uniform(0, 1)), random.uniform(-1, 1, 3)
         expected = np.asarray(function(t, y.copy()), dtype=float).ravel()
-        found = tape.native.evaluate(formulas, t, y.tolist())
+        (found,) = tape.native.evaluate(formulas, [(t, y.tolist())], [])
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
 
 

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Compiled, Recording, Runnable, SensitivityError, System};
@@ -197,8 +198,10 @@ impl FormulaSystem {
     }
 
     /// Runs the system, and returns what it found as columns, with the coefficients of dense output
-    /// if it is wanted.
-    #[pyo3(signature = (parameters, start, end, settings, times, dense, progress=None))]
+    /// if it is wanted, and with samples to be compared.
+    #[pyo3(signature = (
+        parameters, start, end, settings, times, dense, progress=None, compared=false
+    ))]
     #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn run<'py>(
         &self,
@@ -210,6 +213,7 @@ impl FormulaSystem {
         times: Option<PyReadonlyArray1<'py, f64>>,
         dense: bool,
         progress: Option<Py<PyAny>>,
+        compared: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let (method, options) = settings.checked()?;
@@ -224,10 +228,14 @@ impl FormulaSystem {
             (Err(error), None) => return Err(failed(self.system.explained(&error))),
         };
         let columns = columns(py, &self.system, &found, times, dense)?;
+        if compared {
+            let samples = samples(found.steps(), found.run.state.len());
+            columns.set_item(intern!(py, "samples"), samples)?;
+        }
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
         let work = found.run.statistics.field + stages * found.steps().len() + 1;
-        columns.set_item("nfev", work)?;
+        columns.set_item(intern!(py, "nfev"), work)?;
         match interrupted {
             Some(error) => Err(keeping(py, error, || Ok(columns.clone().into_any()))),
             None => Ok(columns),
@@ -348,71 +356,73 @@ fn columns<'py>(
         events.for_each(|event| point(event.s, event.from, &event.before));
         point(found.run.s, found.run.mode, &found.run.state);
     }
-    columns.set_item("t", t.into_pyarray(py))?;
-    columns.set_item("y", y.into_pyarray(py))?;
-    columns.set_item("modes", modes.into_pyarray(py))?;
+    columns.set_item(intern!(py, "t"), t.into_pyarray(py))?;
+    columns.set_item(intern!(py, "y"), y.into_pyarray(py))?;
+    columns.set_item(intern!(py, "modes"), modes.into_pyarray(py))?;
     let events = &found.events;
     let numbers = |of: fn(&DynamicSwitch<usize>) -> usize| {
         events.iter().map(of).collect::<Vec<_>>().into_pyarray(py)
     };
     let reals = |values: Vec<f64>| -> Bound<'py, PyArray1<f64>> { values.into_pyarray(py) };
-    columns.set_item("event_times", reals(events.iter().map(|it| it.s).collect()))?;
-    columns.set_item("event_guards", numbers(|it| it.guard))?;
-    columns.set_item("event_from", numbers(|it| it.from))?;
-    columns.set_item("event_to", numbers(|it| it.to))?;
-    columns.set_item("event_flatness", reals(events.iter().map(|it| it.flatness).collect()))?;
+    columns.set_item(intern!(py, "event_times"), reals(events.iter().map(|it| it.s).collect()))?;
+    columns.set_item(intern!(py, "event_guards"), numbers(|it| it.guard))?;
+    columns.set_item(intern!(py, "event_from"), numbers(|it| it.from))?;
+    columns.set_item(intern!(py, "event_to"), numbers(|it| it.to))?;
+    columns.set_item(
+        intern!(py, "event_flatness"),
+        reals(events.iter().map(|it| it.flatness).collect()),
+    )?;
     let jumps: Vec<bool> = events.iter().map(|it| it.jump).collect();
-    columns.set_item("event_jump", jumps.into_pyarray(py))?;
+    columns.set_item(intern!(py, "event_jump"), jumps.into_pyarray(py))?;
     let together: Vec<_> = events.iter().map(|it| it.simultaneous.clone()).collect();
-    columns.set_item("event_simultaneous", together)?;
+    columns.set_item(intern!(py, "event_simultaneous"), together)?;
     let states = |of: fn(&DynamicSwitch<usize>) -> &Vec<f64>| {
         reals(events.iter().flat_map(|it| of(it).iter().copied()).collect())
     };
-    columns.set_item("event_before", states(|it| &it.before))?;
-    columns.set_item("event_after", states(|it| &it.after))?;
+    columns.set_item(intern!(py, "event_before"), states(|it| &it.before))?;
+    columns.set_item(intern!(py, "event_after"), states(|it| &it.after))?;
     let touches: Vec<_> =
         found.touches.iter().map(|it| (it.s, it.mode, it.guard, it.margin)).collect();
-    columns.set_item("touches", touches)?;
+    columns.set_item(intern!(py, "touches"), touches)?;
     let poles: Vec<_> = found.poles.iter().map(|it| (it.s, it.mode, it.guard)).collect();
-    columns.set_item("poles", poles)?;
+    columns.set_item(intern!(py, "poles"), poles)?;
     let preempted: Vec<_> = found.preempted.iter().map(|it| (it.s, it.mode, it.guard)).collect();
-    columns.set_item("preempted", preempted)?;
+    columns.set_item(intern!(py, "preempted"), preempted)?;
     let rests = found.rests.iter().map(|it| (it.s, it.error, it.guard, it.from, it.to));
-    columns.set_item("rests", rests.collect::<Vec<_>>())?;
-    columns.set_item("samples", samples(steps, n))?;
+    columns.set_item(intern!(py, "rests"), rests.collect::<Vec<_>>())?;
     if dense {
-        columns.set_item("starts", reals(steps.iter().map(|it| it.s).collect()))?;
-        columns.set_item("sizes", reals(steps.iter().map(|it| it.h).collect()))?;
+        columns.set_item(intern!(py, "starts"), reals(steps.iter().map(|it| it.s).collect()))?;
+        columns.set_item(intern!(py, "sizes"), reals(steps.iter().map(|it| it.h).collect()))?;
         let step_modes: Vec<usize> = steps.iter().map(|it| it.mode).collect();
-        columns.set_item("segment_modes", step_modes.into_pyarray(py))?;
+        columns.set_item(intern!(py, "segment_modes"), step_modes.into_pyarray(py))?;
         let count = steps.iter().map(|it| it.coefficients.len()).sum();
         let mut coefficients = Vec::with_capacity(count);
         for step in steps {
             coefficients.extend_from_slice(&step.coefficients);
         }
-        columns.set_item("coefficients", reals(coefficients))?;
+        columns.set_item(intern!(py, "coefficients"), reals(coefficients))?;
     }
-    columns.set_item("start_time", found.start())?;
-    columns.set_item("end_time", found.run.s)?;
-    columns.set_item("end_mode", found.run.mode)?;
-    columns.set_item("end_state", reals(found.run.state.clone()))?;
-    columns.set_item("decided", found.run.decided)?;
+    columns.set_item(intern!(py, "start_time"), found.start())?;
+    columns.set_item(intern!(py, "end_time"), found.run.s)?;
+    columns.set_item(intern!(py, "end_mode"), found.run.mode)?;
+    columns.set_item(intern!(py, "end_state"), reals(found.run.state.clone()))?;
+    columns.set_item(intern!(py, "decided"), found.run.decided)?;
     ending(&columns, system, found)?;
     let work = found.run.statistics;
     let statistics = PyDict::new(py);
     for (name, value) in [
-        ("accepted", work.accepted),
-        ("rejected", work.rejected),
-        ("too_coarse", work.too_coarse),
-        ("field", work.field),
-        ("guards", work.guards),
-        ("resteps", work.resteps),
-        ("isolations", work.isolations),
-        ("switches", work.switches),
+        (intern!(py, "accepted"), work.accepted),
+        (intern!(py, "rejected"), work.rejected),
+        (intern!(py, "too_coarse"), work.too_coarse),
+        (intern!(py, "field"), work.field),
+        (intern!(py, "guards"), work.guards),
+        (intern!(py, "resteps"), work.resteps),
+        (intern!(py, "isolations"), work.isolations),
+        (intern!(py, "switches"), work.switches),
     ] {
         statistics.set_item(name, value)?;
     }
-    columns.set_item("statistics", statistics)?;
+    columns.set_item(intern!(py, "statistics"), statistics)?;
     Ok(columns)
 }
 
@@ -433,7 +443,7 @@ fn samples(steps: &[DynamicSegment<usize>], n: usize) -> Vec<(f64, usize, Vec<f6
 
 /// How the run ended.
 fn ending(columns: &Bound<'_, PyDict>, system: &System, found: &Recording) -> PyResult<()> {
-    let s = found.run.s;
+    let (py, s) = (columns.py(), found.run.s);
     let (status, accumulation, message) = match found.run.outcome {
         Outcome::ReachedEnd => (0, None, "The end was reached.".to_owned()),
         Outcome::EndedByGuard { guard } => {
@@ -452,8 +462,8 @@ fn ending(columns: &Bound<'_, PyDict>, system: &System, found: &Recording) -> Py
             (-1, None, format!("Stopped at t = {s:?}: too many steps."))
         }
     };
-    columns.set_item("outcome", word(found.run.outcome))?;
-    columns.set_item("status", status)?;
-    columns.set_item("accumulation", accumulation)?;
-    columns.set_item("message", message)
+    columns.set_item(intern!(py, "outcome"), word(found.run.outcome))?;
+    columns.set_item(intern!(py, "status"), status)?;
+    columns.set_item(intern!(py, "accumulation"), accumulation)?;
+    columns.set_item(intern!(py, "message"), message)
 }

@@ -108,17 +108,24 @@ impl Tape {
         Ok(graph.select(condition?, above?, below?).number())
     }
 
-    /// The values of formulas at a time, a state and parameters.
-    #[pyo3(signature = (formulas, t, y, parameters=Vec::new()))]
+    /// The values of formulas with parameters, at each of some times and states.
     fn evaluate(
         &self,
         formulas: Vec<u32>,
-        t: f64,
-        y: Vec<f64>,
+        places: Vec<(f64, Vec<f64>)>,
         parameters: Vec<f64>,
-    ) -> PyResult<Vec<f64>> {
+    ) -> PyResult<Vec<Vec<f64>>> {
         let graph = self.graph();
-        values(&graph, &all_known(&graph, &formulas)?, t, (&y, &parameters))
+        let formulas = all_known(&graph, &formulas)?;
+        let components = places.iter().map(|(_, y)| y.len()).min().unwrap_or_default();
+        let program = program(&graph, &formulas, [components, parameters.len()])?;
+        let fixed = program.with(&parameters);
+        let at = |(t, y): &(f64, Vec<f64>)| {
+            let mut values = vec![f64::NAN; formulas.len()];
+            fixed.run(*t, &y[..components], &mut values);
+            values
+        };
+        Ok(places.iter().map(at).collect())
     }
 
     /// Formulas of a state with n components as text.
@@ -145,7 +152,10 @@ impl Tape {
         let slopes = all_known(&graph, &slopes)?;
         let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
         for order in 0..MOST_ORDERS {
-            if values(&graph, &[formula], t, (&y, &parameters))?[0] != 0.0 {
+            let mut value = [f64::NAN];
+            let program = program(&graph, &[formula], [y.len(), parameters.len()])?;
+            program.with(&parameters).run(t, &y, &mut value);
+            if value[0] != 0.0 {
                 return Ok(order);
             }
             formula = graph.slope(formula, &mut |_, variable| match variable {
@@ -236,24 +246,22 @@ fn all_known(graph: &Graph, numbers: &[u32]) -> PyResult<Vec<Formula>> {
     numbers.iter().map(|&number| known(graph, number)).collect()
 }
 
-fn values(
+/// What computes formulas of so many components and parameters.
+fn program(
     graph: &Graph,
     formulas: &[Formula],
-    t: f64,
-    (y, parameters): (&[f64], &[f64]),
-) -> PyResult<Vec<f64>> {
+    [components, parameters]: [usize; 2],
+) -> PyResult<Program> {
     let is_beyond = |variable: &Variable| match variable {
         Variable::Time => false,
-        Variable::Component(place) => *place as usize >= y.len(),
-        Variable::Parameter(place) => *place as usize >= parameters.len(),
+        Variable::Component(place) => *place as usize >= components,
+        Variable::Parameter(place) => *place as usize >= parameters,
     };
     if graph.reads(formulas).iter().any(is_beyond) {
         return Err(bad_input("a formula reads another component"));
     }
-    let inputs = Inputs { components: y.len(), parameters: parameters.len(), fixed: true };
-    let mut values = vec![f64::NAN; formulas.len()];
-    Program::compile(graph, formulas, inputs).with(parameters).run(t, y, &mut values);
-    Ok(values)
+    let inputs = Inputs { components, parameters, fixed: true };
+    Ok(Program::compile(graph, formulas, inputs))
 }
 
 fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult<Rule> {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use stickslip_expression::{RuleOrder, SystemFamily};
 use stickslip_plane::progress::{Progress, Report};
 use stickslip_tracer::{
-    Accumulation, AtlasOptions, Family, Point, RunNames, TraceOptions, Window,
+    Accumulation, AtlasOptions, Family, Point, RunNames, TraceOptions, Watch, Window,
     tracing::{Monitor, follow},
 };
 
@@ -22,7 +22,7 @@ use crate::families::atlas::{
 use crate::families::blueprint::Blueprint;
 use crate::families::failure::of_trace;
 use crate::families::runner::{Made, Runner};
-use crate::families::survey::{Callbacks, survey};
+use crate::families::survey::{self, Callbacks, survey};
 use crate::formulas::{FormulaSystem, Settings as FormulaSettings};
 use crate::hybrid::Level;
 use crate::hybrid::arguments::{
@@ -204,6 +204,7 @@ impl HybridFamily {
     }
 
     /// The boundary between two points of a window, with monitors; `None` if there is none.
+    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn follow<'py>(
         &self,
         py: Python<'py>,
@@ -211,11 +212,13 @@ impl HybridFamily {
         options: &str,
         between: ((f64, f64), (f64, f64)),
         monitors: Vec<Py<PyAny>>,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let _level = Level::enter()?;
         let options: TraceOptions = serde_json::from_str(options).map_err(bad_input)?;
         let between = [between.0, between.1].map(|(x, y)| Point::new(x, y));
-        let runner = self.runner(Trouble::default(), true);
+        let threads = self.threads(1);
+        let runner = self.runner(Trouble::default(), threads.is_none());
         let trouble = runner.trouble();
         let monitor = |function: &Py<PyAny>, point: &Point| {
             if trouble.has_failed() {
@@ -227,11 +230,15 @@ impl HybridFamily {
                 f64::NAN
             })
         };
-        let monitors: Vec<_> =
-            monitors.iter().map(|function| move |point: &Point| monitor(function, point)).collect();
-        let monitors: Vec<Monitor<'_>> = monitors.iter().map(|one| one as Monitor<'_>).collect();
-        let found = follow(&runner, &window_of(window), &options, &between, &monitors);
-        if let Some(error) = trouble.take_failure() {
+        let work = |_, watch: Watch<'_>| {
+            let monitors: Vec<_> =
+                monitors.iter().map(|one| move |point: &Point| monitor(one, point)).collect();
+            let monitors: Vec<_> = monitors.iter().map(|one| one as Monitor<'_>).collect();
+            follow(&runner, &window_of(window), &options, &between, &monitors, watch)
+        };
+        let (found, wish) =
+            survey::watched(py, trouble, threads, &Callbacks::telling(progress), work)?;
+        if let Some(error) = wish {
             return Err(error);
         }
         let Some(found) = found.map_err(|error| of_trace(py, &error))? else { return Ok(None) };

@@ -159,6 +159,11 @@ fn await_thread<T: Send>(
 }
 
 impl Callbacks {
+    /// A function that sees the progress, and none that cancels.
+    pub fn telling(progress: Option<Py<PyAny>>) -> Self {
+        Self(progress, None)
+    }
+
     /// Reports progress, now and then.
     fn tell(&self, meter: &Mutex<Meter>, progress: Progress, trouble: &Trouble) {
         let Some(function) = &self.0 else { return };

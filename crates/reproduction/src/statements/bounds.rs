@@ -13,7 +13,7 @@ use stickslip_studies::paper::{
 use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
 use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
-use super::statement::{each, geometric};
+use super::statement::{digits, each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
@@ -112,11 +112,12 @@ pub fn stiff(subject: &Subject) -> Result<StatementFinding, Stop> {
     let explanation = format!(
         "The largest w at the end, ψ ε_t, of {} collisions with ψ from 0.3 to 1.7 over a turn of the \
          spring's phase falls from {:.2e} at κ = 100 to {:.2e} at 1e5. Over the last decade the \
-         exponent is {exponent:.3}, where (27) has -1/2. The largest w counts as vanishing if it falls \
+         exponent is {}, where (27) has −1/2. The largest w counts as vanishing if it falls \
          from each decade to the next and ends below {SMALL}.",
         EACH * EACH,
         largest[0],
-        largest[3]
+        largest[3],
+        digits(exponent, 3)
     );
     let falls = largest.windows(2).all(|pair| pair[1] < pair[0]) && largest[3] < SMALL;
     Ok(StatementFinding::new(StatementVerdict::of(falls), evidence, explanation))
@@ -137,24 +138,24 @@ pub fn close_to_zero(subject: &Subject) -> Result<StatementFinding, Stop> {
             |psi| Ok::<_, ReproductionError>(subject.collide(kappa, psi, 0.0)?.eps_t().abs());
         let psis: Vec<f64> = geometric(low, 2.0, PLACES).collect();
         let most = maximum(&psis, size)?.value;
-        evidence = evidence.number(format!("largest |ε_t| at κ = {kappa:.3}"), most);
+        evidence = evidence.number(format!("largest |ε_t| at κ = {}", digits(kappa, 3)), most);
         largest.push(most);
     }
     let close = largest.iter().rposition(|&most| most > CLOSE).map_or(0, |last| last + 1);
     let explanation = format!(
         "(30) is taken as the range in which (27) is small and pure sliding has not begun, μ/(α√κ) ≪ \
          g_t/g_n < 2μ/α, with {MUCH} for ≪: ψ from {MUCH}/√κ to 2. The largest |ε_t| there, of \
-         {PLACES} ψ and golden section around the best, is {:.3} at κ = {:.1} and {:.4} at {:.0}. \
+         {PLACES} ψ and golden section around the best, is {} at κ = {} and {} at {}. \
          Close to zero is taken as up to {CLOSE}.",
-        largest[0],
-        kappas[0],
-        largest[kappas.len() - 1],
-        kappas[kappas.len() - 1]
+        digits(largest[0], 3),
+        digits(kappas[0], 1),
+        digits(largest[kappas.len() - 1], 4),
+        digits(kappas[kappas.len() - 1], 0)
     );
     Ok(match close {
         0 => StatementFinding::new(StatementVerdict::Holds, evidence, explanation),
         n if n < kappas.len() => StatementFinding::under(
-            format!("from κ = {:.1} on, of those tried", kappas[n]),
+            format!("from κ = {} on, of those tried", digits(kappas[n], 1)),
             evidence,
             explanation,
         ),
@@ -204,9 +205,11 @@ pub fn pragmatic(subject: &Subject) -> Result<StatementFinding, Stop> {
         *sensible = zero <= -best.value * (1.0 + GAIN);
         sentences.push(format!(
             "Over κ up to {kappa} and g_t/g_n up to {MOST_RATIO_3} the constant 0 has a root mean \
-             square error of {zero:.4} and is off by {zero_most:.3} at most; the best constant, {:.4}, \
-             has {:.4}. ",
-            best.at, -best.value
+             square error of {} and is off by {} at most; the best constant, {}, has {}. ",
+            digits(zero, 4),
+            digits(zero_most, 3),
+            digits(best.at, 4),
+            digits(-best.value, 4)
         ));
     }
     let explanation = format!(

@@ -6,7 +6,7 @@ use stickslip_studies::search::change;
 
 use super::line::{Line, Span};
 use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
-use super::statement::{each, random};
+use super::statement::{digits, each, random};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
@@ -54,7 +54,8 @@ pub fn reversals(subject: &Subject) -> Result<StatementFinding, Stop> {
         let name = format!("share of ψ in (0, 2) where it is false at κ = {}", line.kappa);
         evidence = evidence.number(name, share);
         for Span { low, high, switch_count, reversals } in line.spans().filter(differs) {
-            let name = format!("κ = {}, ψ from {low:.6} to {high:.6}", line.kappa);
+            let name =
+                format!("κ = {}, ψ from {} to {}", line.kappa, digits(*low, 6), digits(*high, 6));
             evidence =
                 evidence.text(name, format!("{switch_count} switches, {reversals} reversals"));
         }
@@ -62,13 +63,13 @@ pub fn reversals(subject: &Subject) -> Result<StatementFinding, Stop> {
     let [printed, read] = shares;
     let explanation = format!(
         "Reversals and switches were counted between all boundaries, which were {}: both numbers \
-         change nowhere else. Half the number of switches is not the number of reversals in {:.2} % \
-         of ψ from 0 to 2 at κ = {STIFFNESS}, and in {:.2} % at {STIFFNESS}/α = {}. In {more} of the \
+         change nowhere else. Half the number of switches is not the number of reversals in {} % \
+         of ψ from 0 to 2 at κ = {STIFFNESS}, and in {} % at {STIFFNESS}/α = {}. In {more} of the \
          {} intervals in which this is so there are more reversals: a spring that sticks turns the \
          motion round and back without a switch.",
         lines[0].method,
-        100.0 * printed,
-        100.0 * read,
+        digits(100.0 * printed, 2),
+        digits(100.0 * read, 2),
         lines[1].kappa,
         intervals.len()
     );
@@ -173,14 +174,16 @@ pub fn decompression(subject: &Subject) -> Result<StatementFinding, Stop> {
         .count("of 1000 ψ in b, c, d, those with a first switch before", early)
         .number("part of e in which the first switch comes before", early_part);
     let explanation = format!(
-        "At κ = {STIFFNESS}/α the first switch passes the largest compression, t = {middle:.4}, at ψ = \
-         {passes:.9}. The regions with 2, 4 and 6 switches reach down to ψ = {:.6}, {} that. In the \
-         region with 8, down to ψ = {:.6}, the first switch comes before in {:.1} % of ψ, and at its \
-         lower end at t = {earliest:.4}.",
-        d.low,
+        "At κ = {STIFFNESS}/α the first switch passes the largest compression, t = {}, at ψ = {}. The \
+         regions with 2, 4 and 6 switches reach down to ψ = {}, {} that. In the region with 8, down to \
+         ψ = {}, the first switch comes before in {} % of ψ, and at its lower end at t = {}.",
+        digits(middle, 4),
+        digits(passes, 9),
+        digits(d.low, 6),
         if passes <= d.low { "above" } else { "below" },
-        e.low,
-        100.0 * early_part
+        digits(e.low, 6),
+        digits(100.0 * early_part, 1),
+        digits(earliest, 4)
     );
     if !late || early_part == 0.0 {
         return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
@@ -188,8 +191,9 @@ pub fn decompression(subject: &Subject) -> Result<StatementFinding, Stop> {
     if early_part == 1.0 {
         return Ok(StatementFinding::new(StatementVerdict::Holds, evidence, explanation));
     }
+    let places = [passes, ratio(passes)].map(|value| digits(value, 6));
     let condition =
-        format!("if e lies below ψ = {passes:.6}, g_t/g_n = {:.6} in the figures", ratio(passes));
+        format!("if e lies below ψ = {}, g_t/g_n = {} in the figures", places[0], places[1]);
     Ok(StatementFinding::under(condition, evidence, explanation))
 }
 
@@ -235,7 +239,8 @@ pub fn small_ratio(subject: &Subject) -> Result<StatementFinding, Stop> {
         let middle = 0.5 * (mark(n) + mark(n + 1));
         let here = count(middle)?;
         counts.push(here);
-        let name = format!("switches for κ from {:.6} to {:.6}", mark(n), mark(n + 1));
+        let [low, high] = [n, n + 1].map(|n| digits(mark(n), 6));
+        let name = format!("switches for κ from {low} to {high}");
         evidence = evidence.count(name, here);
         let beyond = 0.5 * (mark(n + 1) + mark(n + 2));
         if count(beyond)? != here {

@@ -7,7 +7,7 @@ use stickslip_studies::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ra
 use stickslip_studies::search::maximum;
 
 use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
-use super::statement::{each, geometric};
+use super::statement::{digits, each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
@@ -92,11 +92,12 @@ pub fn first_elongation(subject: &Subject) -> Result<StatementFinding, Stop> {
     let lowest = places.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = places.iter().copied().fold(0.0, f64::max);
     let explanation = format!(
-        "As ψ falls, the elongation at the first switch grows down to ψ = {:.7} at κ = {STIFFNESS} and \
-         {:.7} at {STIFFNESS}/α, where the first switch comes at the largest compression, and shrinks \
+        "As ψ falls, the elongation at the first switch grows down to ψ = {} at κ = {STIFFNESS} and \
+         {} at {STIFFNESS}/α, where the first switch comes at the largest compression, and shrinks \
          below. Of {SAMPLES} ψ from {LOWEST} to {HIGHEST} at each κ, {exceptions} neighbours say \
          otherwise.",
-        places[0], places[1]
+        digits(places[0], 7),
+        digits(places[1], 7)
     );
     if exceptions > 0 {
         return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
@@ -107,7 +108,7 @@ pub fn first_elongation(subject: &Subject) -> Result<StatementFinding, Stop> {
     if lowest > 0.99 * HIGHEST {
         return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
-    let condition =
-        format!("above ψ = {highest:.4}, that is g_t/g_n = {:.4} in the figures", ratio(highest));
+    let [highest, ratio] = [highest, ratio(highest)].map(|value| digits(value, 4));
+    let condition = format!("above ψ = {highest}, that is g_t/g_n = {ratio} in the figures");
     Ok(StatementFinding::under(condition, evidence, explanation))
 }

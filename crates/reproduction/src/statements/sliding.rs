@@ -12,7 +12,7 @@ use stickslip_studies::paper::{
 use stickslip_studies::search::change;
 
 use super::statement::{Evidence, StatementFinding, StatementVerdict, Stop};
-use super::statement::{each, geometric};
+use super::statement::{digits, each, geometric};
 use super::subject::Subject;
 use crate::error::ReproductionError;
 
@@ -73,16 +73,17 @@ pub fn above_three(subject: &Subject) -> Result<StatementFinding, Stop> {
         .count("random collisions above both limits", above.len())
         .count("of them with switches", switching);
     let explanation = format!(
-        "With μ = 0.4, α = 2/7 and g_t/g_n = 3, collisions switch only for κ below {limit:.6}, and none \
-         of {} random ones above in both did (κ to 1e4, g_t/g_n to 150). The number 3 belongs to that \
-         μ and α: the boundary is ψ = (g_t/g_n) α/μ, {psi:.4} here. Very small is taken as below \
-         {SMALL}.",
-        above.len()
+        "With μ = 0.4, α = 2/7 and g_t/g_n = 3, collisions switch only for κ below {}, and none of \
+         {} random ones above in both did (κ to 1e4, g_t/g_n to 150). The number 3 belongs to that μ \
+         and α: the boundary is ψ = (g_t/g_n) α/μ, {} here. Very small is taken as below {SMALL}.",
+        digits(limit, 6),
+        above.len(),
+        digits(psi, 4)
     );
     if switching > 0 || limit > SMALL {
         return Ok(StatementFinding::new(StatementVerdict::DoesNotHold, evidence, explanation));
     }
-    Ok(StatementFinding::under(format!("κ above {limit:.4}"), evidence, explanation))
+    Ok(StatementFinding::under(format!("κ above {}", digits(limit, 4)), evidence, explanation))
 }
 
 /// 10: the limit of pure sliding lies below 2μ/α.
@@ -116,11 +117,17 @@ pub fn true_limit(subject: &Subject) -> Result<StatementFinding, Stop> {
             "largest g_t/g_n of pure sliding from κ = 0.58 on, μ = 0.4, α = 2/7",
             paper::ratio(highest),
         );
+    let there = if lowest < highest {
+        format!("lies between {lowest} and {highest}")
+    } else {
+        format!("is {lowest}")
+    };
     let explanation = format!(
         "The ψ above which the count of switches is 0 was bisected to rounding; 2μ/α is ψ = 2. From κ \
-         = 0.58 to 1000 it lies between {lowest:.12} and {highest:.12}, and at κ = 0.3 it is \
-         {below:.6}. The closed form is 2 from κ = 0.5701 on and rises below. The statement counts as \
-         true if the limit is below 2 by more than {CLOSE:e} at all of them."
+         = 0.58 to 1000 it {there}, and at κ = 0.3 it is {}. The closed \
+         form is 2 from κ = 0.5701 on and rises below. The statement counts as true if the limit is \
+         below 2 by more than {CLOSE:e} at all of them.",
+        digits(below, 6)
     );
     Ok(StatementFinding::new(StatementVerdict::of(highest < 2.0 - CLOSE), evidence, explanation))
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use fastrand::Rng;
 use rayon::prelude::*;
+use stickslip_model::text::minus;
 use stickslip_studies::Cell;
 
 use crate::error::ReproductionError;
@@ -197,4 +198,10 @@ pub fn random(count: usize, seed: u64, damped: bool) -> Vec<[f64; 3]> {
 /// `count` numbers from `low` to `high`, evenly in the logarithm.
 pub fn geometric(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> + Clone {
     (0..count).map(move |i| low * (high / low).powf(i as f64 / (count - 1) as f64))
+}
+
+/// `value` to so many places, without zeros at its end.
+pub fn digits(value: f64, places: usize) -> String {
+    // Adding 0 makes −0 a 0.
+    minus(&(format!("{value:.places$}").parse().unwrap_or(value) + 0.0).to_string())
 }

@@ -148,10 +148,11 @@ impl<'a, 'f, F: Family> BoundaryWalk<'a, 'f, F> {
 
     /// The nodes after the start up to the end, or `None` if the end lies before the start. A
     /// branch can go past a vertex before runs show it; the nodes behind the vertex belong to
-    /// another boundary.
-    pub(crate) fn rest(&mut self) -> Traced<Option<Vec<Node>>, F> {
+    /// another boundary. Each node is told to `reached`.
+    pub(crate) fn rest(&mut self, reached: impl Fn()) -> Traced<Option<Vec<Node>>, F> {
         let mut nodes = Vec::new();
         while let Some(node) = self.advance()? {
+            reached();
             nodes.push(node);
         }
         let Some(End::Vertex(special)) = self.end.as_ref().filter(|_| self.past) else {

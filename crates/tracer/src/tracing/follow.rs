@@ -8,6 +8,7 @@ use crate::tracing::end::End;
 use crate::tracing::extrema::{Bracket, solve};
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{Seed, SeedOf};
+use crate::watch::{Progress, Watch};
 use crate::window::{Point, Window};
 
 /// A function of the two parameters whose values are recorded along a boundary. It may return NaN
@@ -56,11 +57,12 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// Zeros of monitors are found where a monitor has different signs at successive nodes, which are
 /// at most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself. Their
 /// error along it is the error of the monitor divided by its slope, or 1e-10 of the window's
-/// shorter extent.
+/// shorter extent. Each node is a step for `watch`, and each value of a monitor at one.
 ///
 /// ```
 /// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
-/// use stickslip_tracer::{Point, TraceOptions, Window, hybrid::HybridFamily, tracing::follow};
+/// use stickslip_tracer::{Point, TraceOptions, Watch, Window};
+/// use stickslip_tracer::{hybrid::HybridFamily, tracing::follow};
 ///
 /// /// A ball that keeps a fraction of its velocity at each bounce.
 /// struct Ball(f64);
@@ -93,7 +95,8 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// let top = |point: &Point| point.y * point.y * point.x - 0.2;
 /// let places = [Point::new(0.6, 0.55), Point::new(1.9, 0.75)];
 /// let trace = TraceOptions::default();
-/// let found = follow(&family, &window, &trace, &places, &[&top])?.ok_or("no boundary")?;
+/// let found = follow(&family, &window, &trace, &places, &[&top], Watch::SILENT)?;
+/// let found = found.ok_or("no boundary")?;
 /// let [zero] = found.zeros[..] else { panic!("one zero") };
 /// // y √(2x) = √0.4, so that √(2x) = 2.4 − 2√0.4.
 /// let root: f64 = 2.4 - 2.0 * 0.4_f64.sqrt();
@@ -103,16 +106,18 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// ```
 ///
 /// # Errors
-/// An option is out of its range, the window is not a rectangle, a run fails, or a margin is not a
-/// number.
+/// An option is out of its range, the window is not a rectangle, a run fails, a margin is not a
+/// number, or the watch cancels.
 pub fn follow<F: Family>(
     family: &F,
     window: &Window,
     options: &TraceOptions,
     between: &[Point; 2],
     monitors: &[Monitor<'_>],
+    watch: Watch<'_>,
 ) -> Traced<Option<FollowedOf<F>>, F> {
-    let runs = Runs::new(family, *window, *options)?;
+    let runs = Runs::new(family, *window, *options)?.watched(watch);
+    watch.report(Progress::Now { what: "following the boundary" });
     let Some(seed) = Seed::between(&runs, between)? else { return Ok(None) };
     let Some((mut nodes, end)) = walk(&runs, &seed, true)? else { return Ok(None) };
     let ends = if let End::Closed = end {
@@ -124,11 +129,16 @@ pub fn follow<F: Family>(
         nodes.splice(0..0, before);
         Some([start, end])
     };
-    let values = monitors.iter().map(|monitor| {
-        let values = nodes.iter().map(|node| monitor(&node.point));
-        values.collect::<Vec<f64>>()
-    });
-    let values: Vec<_> = values.collect();
+    watch.report(Progress::Now { what: "looking at monitors" });
+    watch.report(Progress::Begin { steps: monitors.len() * nodes.len() });
+    let value = |monitor: &Monitor<'_>, node: &Node| {
+        runs.go_on()?;
+        let value = monitor(&node.point);
+        watch.report(Progress::Advance { steps: 1 });
+        Ok(value)
+    };
+    let values = monitors.iter().map(|monitor| nodes.iter().map(|node| value(monitor, node)));
+    let values: Vec<Vec<f64>> = values.map(Iterator::collect).collect::<Traced<_, F>>()?;
     let (margin, sides) = (seed.margin, seed.labels);
     let curve = Curve { margin, sides, nodes, ends: None };
     let mut zeros = Vec::new();
@@ -167,7 +177,11 @@ fn walk<F: Family>(
     forward: bool,
 ) -> Traced<Option<WalkOf<F>>, F> {
     let Some(mut branch) = BoundaryWalk::new(runs, seed, forward, &[])? else { return Ok(None) };
-    let Some(rest) = branch.rest()? else { return Ok(None) };
+    let reached = || {
+        runs.watch.report(Progress::Begin { steps: 1 });
+        runs.watch.report(Progress::Advance { steps: 1 });
+    };
+    let Some(rest) = branch.rest(reached)? else { return Ok(None) };
     let nodes = std::iter::once(branch.origin()).chain(rest).collect();
     let end = branch.end().cloned().unwrap_or(End::Limit);
     Ok(Some((nodes, end)))

@@ -1,10 +1,11 @@
 //! One boundary, followed with monitors, against closed forms.
 
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_tracer::{
-    Family, FreeRun, Point, TraceOptions, VertexKind, Window,
-    tracing::{End, follow},
+    Family, FreeRun, Point, Progress, TraceError, TraceOptions, VertexKind, Watch, Window,
+    tracing::{End, Monitor, follow},
 };
 
 use crate::any::any;
@@ -45,7 +46,8 @@ fn monitors_of_a_closed_boundary_have_their_zeros() {
     let jump = |point: &Point| if point.x > 0.07 { 1.0 } else { -1.0 };
     let hole = |point: &Point| if point.x.abs() < 0.4 { f64::NAN } else { point.x };
     let options = TraceOptions::default();
-    let found = follow(&any(Disc), &window(1.0), &options, &PLACES, &[&wave, &jump, &hole]);
+    let monitors: [Monitor<'_>; 3] = [&wave, &jump, &hole];
+    let found = follow(&any(Disc), &window(1.0), &options, &PLACES, &monitors, Watch::SILENT);
     let found = found.unwrap().unwrap();
     assert!(found.ends.is_none());
     assert_eq!(found.sides, [[false], [true]], "the margin is positive on the left");
@@ -75,7 +77,17 @@ fn monitors_of_a_closed_boundary_have_their_zeros() {
 fn a_boundary_that_leaves_the_window_has_both_ends() {
     let options = TraceOptions::default();
     let height = |point: &Point| point.y - 0.45;
-    let found = follow(&any(Disc), &window(0.3), &options, &PLACES, &[&height]).unwrap().unwrap();
+    let steps = [AtomicUsize::new(0), AtomicUsize::new(0)];
+    let report = |progress: Progress| match progress {
+        Progress::Begin { steps: begun } => drop(steps[1].fetch_add(begun, Ordering::Relaxed)),
+        Progress::Advance { steps: done } => drop(steps[0].fetch_add(done, Ordering::Relaxed)),
+        Progress::Now { .. } => (),
+    };
+    let watch = Watch::from(&report);
+    let found = follow(&any(Disc), &window(0.3), &options, &PLACES, &[&height], watch);
+    let found = found.unwrap().unwrap();
+    let [done, begun] = steps.map(AtomicUsize::into_inner);
+    assert!(done == begun && done >= 2 * found.nodes.len() - 1, "{done} of {begun} steps");
     let ends = found.ends.unwrap();
     for (end, node) in ends.iter().zip([&found.nodes[0], &found.nodes[found.nodes.len() - 1]]) {
         let End::Vertex(special) = end else { panic!("{end:?}") };
@@ -96,6 +108,27 @@ fn a_boundary_that_leaves_the_window_has_both_ends() {
 #[test]
 fn there_is_nothing_to_follow_between_equal_labels() {
     let places = [Point::new(0.0, 0.1), Point::new(0.1, 0.0)];
-    let found = follow(&any(Disc), &window(1.0), &TraceOptions::default(), &places, &[]);
+    let options = TraceOptions::default();
+    let found = follow(&any(Disc), &window(1.0), &options, &places, &[], Watch::SILENT);
     assert!(found.unwrap().is_none());
+}
+
+/// It ends with the run, or the value of a monitor, that is under way.
+#[test]
+fn a_boundary_can_be_abandoned() {
+    let options = TraceOptions::default();
+    let asked = AtomicUsize::new(0);
+    let height = |point: &Point| point.y;
+    let all = |most: usize| {
+        asked.store(0, Ordering::Relaxed);
+        let cancelled = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+        let watch = Watch::SILENT.cancelled_by(&cancelled);
+        follow(&any(Disc), &window(1.0), &options, &PLACES, &[&height], watch).map(drop)
+    };
+    assert!(all(usize::MAX).is_ok());
+    let whole = asked.load(Ordering::Relaxed);
+    for most in [0, 1, whole / 2, whole - 1] {
+        assert!(matches!(all(most), Err(TraceError::Cancelled)), "after {most} of {whole}");
+        assert_eq!(asked.load(Ordering::Relaxed), most + 1);
+    }
 }

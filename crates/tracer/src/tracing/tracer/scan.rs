@@ -198,7 +198,7 @@ impl<F: Family> Tracer<'_, F> {
             self.builder.network.unresolved.push(Unresolved::Change { between, labels });
             return Ok(None);
         };
-        let rest = branch.rest()?;
+        let rest = branch.rest(|| ())?;
         let is_past = rest.is_none();
         let nodes = rest.unwrap_or_default();
         let last = nodes.last().map_or(seed.point, |node| node.point);

@@ -1,0 +1,160 @@
+"""What functions of Python depend on, so that those that were recorded are known again.
+
+Functions with the same signature return the same numbers: their code is the same, and so is all
+that it reads: closures, defaults, attributes, globals, and what it takes out of modules. What is not
+made of numbers, texts, small arrays, rows, modules and functions has no signature.
+"""
+
+from __future__ import annotations
+
+import dis
+import functools
+import types
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stickslip._systems import Guard, Mode, _Clock
+
+#: Values that are their own signatures, and numbers, whose zeros have signs.
+_PLAIN = {bool, int, str, bytes, type(None)}
+_NUMBERS = {float, complex, np.float64, np.float32, np.int64, np.int32, np.bool_}
+#: Functions that always do the same.
+_FIXED = (np.ufunc, type(np.dot), types.BuiltinFunctionType, types.FunctionType)
+#: What reads by other names than those in the code.
+_INDIRECT = {"eval", "exec", "compile", "globals", "locals", "vars", "dir", "getattr", "hasattr"}
+_INDIRECT |= {"__import__", "open"}
+_OF_MODES = {"right_hand_side", "guard_list", "_sources"}
+_LOADS = {"LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS"}
+_HIDING = {"IMPORT_NAME", "LOAD_BUILD_CLASS"}
+#: Entries of arrays and rows that are compared.
+_MOST_ENTRIES = 256
+
+
+class Unsigned(Exception):
+    """A value has no signature."""
+
+
+class _Uses(NamedTuple):
+    #: Names of globals.
+    names: tuple[str, ...]
+    #: The same, and those of attributes.
+    every: frozenset[str]
+    is_open: bool
+
+
+@functools.lru_cache(maxsize=1024)
+def _uses(code: types.CodeType) -> _Uses:
+    """What code reads, also that of functions inside."""
+    codes, rest = [], [code]
+    while rest:
+        codes.append(rest.pop())
+        rest += [inner for inner in codes[-1].co_consts if isinstance(inner, types.CodeType)]
+    steps = [step for one in codes for step in dis.get_instructions(one)]
+    names = {step.argval for step in steps if step.opname in _LOADS}
+    hides = any(step.opname in _HIDING for step in steps) or not names.isdisjoint(_INDIRECT)
+    every = frozenset(name for one in codes for name in one.co_names)
+    return _Uses(tuple(sorted(names)), every, not hides)
+
+
+class Signer:
+    """Signs values, and keeps alive those that are told apart by their places."""
+
+    def __init__(self) -> None:
+        self.kept: list[Any] = []
+        self._names: set[str] = set()
+        self._modules: dict[int, types.ModuleType] = {}
+        self._under_way: set[int] = set()
+        self._has_modes = False
+
+    def signature(self, values: Any) -> Any:
+        """The signature of values. Raises Unsigned if they have none."""
+        own = self._sign(values)
+        while True:
+            before = len(self._names), len(self._modules)
+            modules = [self._module(module) for module in [*self._modules.values()]]
+            if before == (len(self._names), len(self._modules)):
+                if self._has_modes and not self._names.isdisjoint(_OF_MODES):
+                    raise Unsigned
+                return own, tuple(modules)
+
+    def _sign(self, value: Any) -> Any:
+        kind = type(value)
+        if kind in _PLAIN:
+            return kind, value
+        if kind in _NUMBERS:
+            return kind, repr(value)
+        if kind is types.ModuleType:
+            self._modules[id(value)] = value
+        elif kind is types.FunctionType and not _is_of_library(value):
+            return self._inside(value, self._function)
+        elif kind is tuple or kind is list:
+            return kind, self._inside(value, self._row) if value else ()
+        elif kind is dict:
+            return kind, self._inside(value, self._mapping)
+        elif kind is np.ndarray and value.size <= _MOST_ENTRIES and value.dtype.kind in "fiub":
+            return value.shape, value.dtype.str, value.tobytes()
+        elif kind is Guard or kind is _Clock:
+            return kind, self._row(vars(value).values())
+        elif kind is Mode:
+            self._has_modes = True
+            return kind, value.name
+        elif not _is_fixed(value):
+            raise Unsigned
+        self.kept.append(value)
+        return kind, id(value)
+
+    def _inside(self, value: Any, sign: Callable[[Any], Any]) -> Any:
+        """What `sign` makes of a value that is not inside itself."""
+        if id(value) in self._under_way:
+            raise Unsigned
+        self._under_way.add(id(value))
+        signed = sign(value)
+        self._under_way.discard(id(value))
+        return signed
+
+    def _row(self, values: Any) -> Any:
+        if len(values) > _MOST_ENTRIES:
+            raise Unsigned
+        sign, plain = self._sign, _PLAIN
+        return tuple([(type(it), it) if type(it) in plain else sign(it) for it in values])
+
+    def _mapping(self, values: dict[Any, Any]) -> Any:
+        return self._row([one for pair in values.items() for one in pair])
+
+    def _module(self, module: types.ModuleType) -> Any:
+        own = vars(module)
+        found = [(name, self._sign(own[name])) for name in sorted(self._names) if name in own]
+        return id(module), tuple(found)
+
+    def _function(self, function: types.FunctionType) -> Any:
+        uses, names = _uses(function.__code__), function.__globals__
+        others: dict[str, Any] = function.__builtins__  # type: ignore[attr-defined]
+        if not uses.is_open:
+            raise Unsigned
+        self._names |= uses.every
+        try:
+            read = [names[it] if it in names else others[it] for it in uses.names]
+            read += [cell.cell_contents for cell in function.__closure__ or ()]
+        except (KeyError, ValueError):
+            # A name that has no value yet.
+            raise Unsigned from None
+        if function.__defaults__ or function.__kwdefaults__ or vars(function):
+            read += [function.__defaults__, function.__kwdefaults__, vars(function)]
+        self.kept.append(function.__code__)
+        return id(function.__code__), self._row(read)
+
+
+def _is_of_library(function: types.FunctionType) -> bool:
+    """Whether it is a function of a library, which is used as it is."""
+    return str(function.__module__).partition(".")[0] in ("numpy", "scipy")
+
+
+def _is_fixed(value: Any) -> bool:
+    """Whether what a value does never changes."""
+    if isinstance(value, type):
+        # Classes that are written in C have no attributes that can be set.
+        return value.__module__ in ("builtins", "numpy") and not value.__flags__ & 1 << 9
+    owner = getattr(value, "__self__", None)
+    return isinstance(value, _FIXED) and (owner is None or isinstance(owner, types.ModuleType))

@@ -1,0 +1,211 @@
+"""What was recorded is kept, and used only as long as all that its functions read is the same."""
+
+import functools
+import math
+import types
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import stickslip
+from stickslip import HybridSystem, _recorded
+
+RATE = 1.0
+TABLE = {"rate": 1.0, "more": [1.0]}
+HELPERS = types.ModuleType("helpers")
+exec("K = 1.0\ndef f(y):\n    return -K * y", HELPERS.__dict__)
+
+
+def of_a_global(t, y):
+    return -RATE * y
+
+
+def of_a_helper(t, y):
+    return helper(HELPERS, y)
+
+
+def helper(module, y):
+    return -module.K * y
+
+
+def of_a_table(t, y):
+    return -TABLE["rate"] * y * TABLE["more"][0]
+
+
+def with_a_default(t, y, rate=1.0, *, more=1.0):
+    return -rate * more * y
+
+
+def with_an_attribute(t, y):
+    return -inner.rate * y
+
+
+def inner():
+    """It has an attribute."""
+
+
+inner.rate = 1.0  # type: ignore[attr-defined]
+
+
+def closed(rate):
+    return lambda t, y: -rate * y
+
+
+def by_a_builtin(t, y):
+    return -abs(y[0])
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """What is recorded anew, with nothing kept from before."""
+    found: list[object] = []
+
+    class Counted(_recorded.Recorded):
+        def __init__(self, *args: Any) -> None:
+            super().__init__(*args)
+            found.append(self)
+
+    monkeypatch.setattr(_recorded, "Recorded", Counted)
+    monkeypatch.setattr(_recorded, "_KEPT", {})
+    return found
+
+
+def end(function: Callable[..., Any], y0: float = 1.0, **options: Any) -> float:
+    """The end of a run, which formulas and functions have in common."""
+    found = stickslip.solve(function, (0.0, 1.0), [y0], **options)
+    assert found.decided
+    plain = stickslip.solve(function, (0.0, 1.0), [y0], record=False, **options)
+    assert found.y[0, -1] == pytest.approx(plain.y[0, -1], rel=1e-9)
+    return float(found.y[0, -1])
+
+
+def test_functions_are_recorded_once(made: list[object]) -> None:
+    for y0 in (1.0, 2.0, 2.0, -1.0):
+        assert end(of_a_global, y0) == pytest.approx(y0 * math.exp(-1), rel=1e-9)
+    # Others with the same code are the same, whatever happens to the first ones.
+    rates = np.array([1.0, 2.0])
+    first, second = closed(rates[:1]), closed(rates[1:].copy())
+    assert end(first) == pytest.approx(math.exp(-1))
+    assert end(second) == pytest.approx(math.exp(-2))
+    rates[0] = 7.0
+    assert end(closed(np.array([1.0]))) == pytest.approx(math.exp(-1))
+    assert end(first) == pytest.approx(math.exp(-7))
+    assert len(made) == 4
+
+
+def test_a_start_is_that_of_the_run(made: list[object]) -> None:
+    for t, y0 in ((0.0, 1.0), (0.5, 3.0), (0.0, 0.0), (0.0, -0.0)):
+        found = stickslip.solve(of_a_global, (t, 2.0), [y0])
+        assert found.system is not None
+        again = found.system.solve((t, 2.0))
+        assert (again.t == found.t).all() and (again.y == found.y).all()
+        assert math.copysign(1.0, found.y[0, 0]) == math.copysign(1.0, y0)
+        assert found.system.text.endswith(f"at {t:g}\n")
+    assert len(made) == 1
+
+
+def test_the_order_of_a_zero_is_that_of_the_start(made: list[object]) -> None:
+    # At rest on the floor it does not hit it; from above it does.
+    def floor(t, y):
+        return y[0]
+
+    def fall(t, y):
+        return [y[1], -1.0]
+
+    for height, speed, times in ((0.0, 1.0, [2.0]), (0.5, 0.0, [1.0]), (0.0, 0.0, [])):
+        found = stickslip.solve(fall, (0, 3), [height, speed], events=floor)
+        np.testing.assert_allclose(found.t_events[0], times, atol=1e-9)
+        assert found.decided
+    with pytest.raises(ValueError, match="is zero all the time at the start"):
+        stickslip.solve(lambda t, y: [0 * y[0]], (0, 3), [0.0], events=floor, record=True)
+    assert len(made) == 1
+
+
+@pytest.mark.parametrize(
+    ("function", "change"),
+    [
+        (of_a_global, lambda patch: patch.setitem(globals(), "RATE", 2.0)),
+        (of_a_global, lambda patch: patch.setitem(globals(), "RATE", np.float64(2.0))),
+        (of_a_helper, lambda patch: patch.setattr(HELPERS, "K", 2.0)),
+        (lambda t, y: HELPERS.f(y), lambda patch: patch.setattr(HELPERS, "K", 2.0)),
+        (lambda t, y: HELPERS.f(y), lambda patch: patch.setattr(HELPERS, "f", lambda y: -2 * y)),
+        (of_a_helper, lambda patch: patch.setitem(globals(), "helper", lambda m, y: -2 * y)),
+        (of_a_table, lambda patch: patch.setitem(TABLE, "rate", 2.0)),
+        (of_a_table, lambda patch: patch.setitem(TABLE, "more", [2.0])),
+        (with_a_default, lambda patch: patch.setattr(with_a_default, "__defaults__", (2.0,))),
+        (
+            with_a_default,
+            lambda patch: patch.setattr(with_a_default, "__kwdefaults__", {"more": 2.0}),
+        ),
+        (with_a_default, lambda patch: patch.setattr(with_a_default, "__code__", DOUBLE)),
+        (with_an_attribute, lambda patch: patch.setattr(inner, "rate", 2.0)),
+        (by_a_builtin, lambda patch: patch.setattr("builtins.abs", lambda x: 2 * x)),
+        (lambda t, y: -np.abs(y), lambda patch: patch.setattr(np, "abs", lambda x: 2 * x)),
+        (
+            lambda t, y: -getattr(HELPERS, "K") * y,  # noqa: B009
+            lambda patch: patch.setattr(HELPERS, "K", 2.0),
+        ),
+    ],
+    ids=range(15),
+)
+def test_a_change_is_seen(
+    function: Any, change: Any, made: list[object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert end(function) == pytest.approx(math.exp(-1), rel=1e-9)
+    with monkeypatch.context() as patch:
+        change(patch)
+        assert end(function) == pytest.approx(math.exp(-2), rel=1e-9)
+    assert end(function) == pytest.approx(math.exp(-1), rel=1e-9)
+
+
+DOUBLE = (lambda t, y, rate=1.0, *, more=1.0: -2 * y).__code__
+
+
+def test_a_change_of_arguments_is_seen(made: list[object]) -> None:
+    def decays(t, y, rate):
+        return -rate[0] * y
+
+    rate = np.array([1.0])
+    for value in (1.0, 2.0, 1.0, 3.0):
+        rate[0] = value
+        assert end(decays, args=(rate,)) == pytest.approx(math.exp(-value), rel=1e-9)
+    for many in ([1.0], (1.0,), {0: 1.0}):
+        assert end(decays, args=(many,)) == pytest.approx(math.exp(-1.0), rel=1e-9)
+    partly = functools.partial(decays, rate=[2.0])
+    assert end(partly) == pytest.approx(math.exp(-2.0), rel=1e-9)
+    partly.keywords["rate"][0] = 1.0
+    assert end(partly) == pytest.approx(math.exp(-1.0), rel=1e-9)
+
+
+def test_events_and_modes_are_those_of_the_call(made: list[object]) -> None:
+    def half(t, y):
+        return y[0] - 0.5
+
+    for terminal, direction, status in ((True, 0, 1), (False, 0, 0), (True, 1, 0), (True, -1, 1)):
+        half.terminal, half.direction = terminal, direction  # type: ignore[attr-defined]
+        assert stickslip.solve(of_a_global, (0, 1), [1.0], events=half).status == status
+    system = HybridSystem()
+    fall = system.mode("fall", lambda t, y: [y[1], -1.0])
+    fall.guard("floor", lambda t, y: y[0], reset=lambda t, y: [0.0, -y[1] / 2])
+    count = len(made)
+    for height in (0.5, 2.0):
+        found = stickslip.solve(system, (0, 2.5), [height, 0.0])
+        assert found.t_events[0][0] == pytest.approx(math.sqrt(2 * height)) and found.decided
+    assert len(made) == count + 1
+    fall.right_hand_side = lambda t, y: [y[1], -4.0]
+    found = stickslip.solve(system, (0, 2.0), [2.0, 0.0])
+    assert found.t_events[0][0] == pytest.approx(1.0)
+    fall.guard("late", lambda t, y: 0.5 - t, terminal=True)
+    assert stickslip.solve(system, (0, 2.0), [2.0, 0.0]).t[-1] == pytest.approx(0.5)
+
+
+def test_only_the_last_ones_are_kept(made: list[object]) -> None:
+    for rate in range(2 * _recorded.MOST_KEPT):
+        stickslip.solve(closed(1.0 + rate), (0, 1e-3), [1.0])
+    assert len(_recorded._KEPT) == _recorded.MOST_KEPT
+    # A tape does not grow without end.
+    count = len(made)
+    for place in range(3 * _recorded.MOST_STARTS):
+        stickslip.solve(of_a_global, (0, 0.1), [float(place)])
+    assert len(made) == count + 3
