@@ -20,7 +20,7 @@
 use stickslip_model::{Contact, Law, Normal, Reduction};
 use stickslip_tracer::Point;
 
-/// The greatest overlap without damping and friction, in scaled units.
+/// The greatest overlap without damping, friction and adhesion, in scaled units.
 fn greatest(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => 1.0,
