@@ -1,6 +1,6 @@
 //! What the model says of the data.
 
-use stickslip_model::{Collider, Collision, CollisionFailure, Contact, Engine};
+use stickslip_model::{Collider, Collision, CollisionError, CollisionFailure, Contact, Engine};
 
 use super::FitError;
 use super::bodies::{FittedBodies, Units, Values};
@@ -76,7 +76,7 @@ impl Problem {
     /// Appends what the model says of each datum.
     ///
     /// # Errors
-    /// An impact cannot be computed.
+    /// An impact cannot be computed, or adhesion holds its bodies together.
     pub fn predict(&self, values: &Values, predicted: &mut Vec<f64>) -> Result<(), FitError> {
         let mut collision = None;
         for impact in &self.impacts {
@@ -84,6 +84,10 @@ impl Problem {
             let collision = collision.get_or_insert_with(|| Collision::before(contact));
             Engine::Auto
                 .collide_into(contact, collision)
+                .and_then(|_| match collision.adheres {
+                    true => Err(CollisionError::Adheres { time: collision.contact_time }),
+                    false => Ok(()),
+                })
                 .map_err(|source| CollisionFailure::new(&contact, source))?;
             let collided = self.collided(impact, collision.eps_n, collision.eps_t());
             predicted.extend(impact.quantities.iter().map(|quantity| collided.value(*quantity)));
