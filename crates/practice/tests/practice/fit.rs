@@ -131,6 +131,13 @@ fn spins_alone_have_one_best_spring() {
     assert!((best.values.kappa - 3.279).abs() < 1e-3, "{best:?}");
     assert!((best.values.mu - 0.0943).abs() < 1e-4, "{best:?}");
     assert!(best.root_mean_squares[0].value < 21.3, "{best:?}");
+    // κ = 3.37 and μ = 0.095 fit all but as well, to 21.7 rad/s, and are in both intervals.
+    let values = Values { kappa: 3.37, mu: 0.095, ..best.values };
+    let survey = Survey::new(&FitSettings::new(bodies, oblique::spins()), SILENT).unwrap();
+    assert!((survey.misfit(&values).unwrap() / 7.0).sqrt() < best.root_mean_squares[0].value + 0.5);
+    for (interval, value) in found.intervals.iter().zip([3.37, 0.095]) {
+        assert_eq!(interval.holds(value), Some(true), "{interval:?}");
+    }
 }
 
 fn known() -> (FittedBodies, Values) {
