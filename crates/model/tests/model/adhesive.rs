@@ -1,10 +1,9 @@
 //! Adhesion: DMT and JKR with friction, and bodies that stay together.
 
-use serde_json::Value;
 use stickslip_model::spheres::{Body, BodyPair, Constants, Encounter, Forces, Material, Sphere};
 use stickslip_model::{
-    Collision, CollisionError, Contact, ContactEnd, Damping, Engine, HistoryOf, Law, Normal,
-    Tangential, Tolerances, presets, restitution,
+    Collision, CollisionError, Contact, ContactEnd, Damping, Engine, Law, Normal, Tolerances,
+    presets, restitution,
 };
 
 use crate::common::file;

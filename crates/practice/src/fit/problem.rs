@@ -84,11 +84,11 @@ impl Problem {
             let collision = collision.get_or_insert_with(|| Collision::before(contact));
             Engine::Auto
                 .collide_into(contact, collision)
-                .and_then(|_| match collision.adheres {
-                    true => Err(CollisionError::Adheres { time: collision.contact_time }),
-                    false => Ok(()),
-                })
                 .map_err(|source| CollisionFailure::new(&contact, source))?;
+            if collision.adheres {
+                let held = CollisionError::Adheres { time: collision.contact_time };
+                return Err(CollisionFailure::new(&contact, held).into());
+            }
             let collided = self.collided(impact, collision.eps_n, collision.eps_t());
             predicted.extend(impact.quantities.iter().map(|quantity| collided.value(*quantity)));
         }

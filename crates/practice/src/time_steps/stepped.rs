@@ -179,12 +179,14 @@ impl ForceRule {
     /// falls in free flight, in which a force would attract until the end.
     fn advance(&mut self, state: &mut State) -> Option<f64> {
         let Self { law, adhesion, dt, .. } = *self;
-        let root = adhesion.map_or_else(|| state.x.sqrt(), |adhesion| adhesion.radius(state.x));
         state.greatest = state.greatest.max(state.x);
-        let [elastic, slope] = match (adhesion, law.damping) {
-            (Some(adhesion), _) => adhesion.elastic(root),
+        let ([elastic, slope], root) = match (adhesion, law.damping) {
+            (Some(adhesion), _) => {
+                let radius = adhesion.radius(state.x);
+                (adhesion.elastic(radius), radius)
+            }
             (None, Damping::Yielding) => self.yielding(state),
-            (None, _) => self.elastic(state),
+            (None, _) => (self.elastic(state), state.x.sqrt()),
         };
         let eta = match law.damping {
             Damping::None | Damping::Hysteretic | Damping::Hardening | Damping::Yielding => 0.0,
@@ -221,8 +223,8 @@ impl ForceRule {
         }
     }
 
-    /// The same of bodies that yield.
-    fn yielding(&self, state: &State) -> [f64; 2] {
+    /// The same of bodies that yield, and the contact radius.
+    fn yielding(&self, state: &State) -> ([f64; 2], f64) {
         let State { x, greatest, .. } = *state;
         let from = (1.25 / (self.damping * self.damping)).powf(0.4);
         let loading = |x: f64| {
@@ -230,13 +232,13 @@ impl ForceRule {
             [least * (1.5 * x - 0.5 * f64::min(x, from)), 1.5 * least]
         };
         if x == greatest || greatest <= from {
-            return loading(x);
+            return (loading(x), x.sqrt());
         }
         // With the radius r the overlap falls by the r-th part of the greatest one.
         let radius = greatest * greatest.sqrt() / loading(greatest)[0];
         let pushed = f64::max(0.0, x - greatest * (1.0 - 1.0 / radius));
         let root = (radius * pushed).sqrt();
-        [root * pushed, 1.5 * root]
+        ([root * pushed, 1.5 * root], root)
     }
 
     /// The part of the overlap that pushes, and the factor of the stiffness.

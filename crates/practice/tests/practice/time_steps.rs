@@ -1,6 +1,8 @@
 //! What is promised of errors of time steps.
 
-use stickslip_model::{Contact, ContactEnd, Engine, Law, Reduction, exact, presets};
+use stickslip_model::{
+    Contact, ContactEnd, Engine, HistoryOf, Law, Reduction, Tangential, exact, presets,
+};
 use stickslip_plane::progress::{self, Progress};
 use stickslip_practice::time_steps::{
     self, Scheme, Status, Stepped, SteppedQuantity, Stepping, TimeStepSettings, TimeSteps,
@@ -76,6 +78,21 @@ fn the_normal_motion_of_leaps_has_a_closed_form() {
             }
             assert!((found.eps_n + v).abs() < 1e-12, "{steps} {phase}");
             assert_eq!(found.steps, u64::from(count));
+        }
+    }
+}
+
+/// The contact radius of yielded bodies is what Mindlin's stiffness follows, in steps too.
+#[test]
+fn steps_of_yielded_bodies_come_to_the_collision() {
+    for (history, rescaled) in [(HistoryOf::Displacement, false), (HistoryOf::Force, true)] {
+        let yielding = presets::find("thornton").expect("a law").law;
+        let law = Law { tangential: Tangential::Mindlin, history, rescaled, ..yielding };
+        let contact = Contact::new(6.0, 0.7, 3.0).expect("parameters");
+        let result = run(vec![contact.with_law(law, 0.0).expect("a law")], &[1e2, 1e3, 1e5]);
+        for row in &result.rows {
+            let worst = row.eps_t.expect("errors").worst.error;
+            assert!(worst < 10.0 / row.steps_per_contact, "{row:?}");
         }
     }
 }
