@@ -13,8 +13,8 @@
 //! Against LAMMPS itself, in 264 impacts with 28 laws: the root mean square of the error of ε_t
 //! differs from the error of LAMMPS' own collisions by at most 0.3 % at t_c/20, 2.5 % at t_c/50 and
 //! 3.1 % at t_c/100. Exceptions are five elastic impacts at t_c/100, whose errors below 4e-6 depend
-//! on the overlap of LAMMPS' spheres (`docs/validation.md`). With adhesion and turning normals, 432
-//! impacts in 20 to 200 steps are those of LAMMPS to 1e-10.
+//! on the overlap of LAMMPS' spheres (`docs/validation.md`). With adhesion and turning normals, 801
+//! impacts in 20 to 200 steps are those of LAMMPS to 1e-10, or 1e-6 with synchronized dashpots.
 //!
 //! The contact is a point, unless an overlap is given ([`Stepping::overlap`]): then the normal
 //! turns during the contact, and what that changes is in the errors too, however short steps are.

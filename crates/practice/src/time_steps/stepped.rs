@@ -333,9 +333,9 @@ pub enum Scheme {
     /// `calc_force_dem.f`, `DTSOLID_TMP`). What else is special there was not compared.
     Elapsed,
     /// As [`Self::Lammps`], but velocities are taken along the normal in the middle of the step,
-    /// where they belong (`synchronized_verlet` of LAMMPS, pull request 4351; read in
-    /// `granular_model.cpp`, commit 14dc2fb). Without an [overlap](Stepping::overlap) it is the
-    /// same.
+    /// where they belong, and the normal force acts along it (`synchronized_verlet` of LAMMPS, pull
+    /// request 4351, compared with the version of 22 July 2025). Without an
+    /// [overlap](Stepping::overlap) it is the same.
     #[serde(rename = "synchronized_verlet")]
     SynchronizedVerlet,
 }

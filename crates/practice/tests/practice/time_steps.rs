@@ -214,23 +214,18 @@ fn turning_contacts_are_those_of_another_program() {
     let text = include_str!("../../../../tests/data/turning_contacts.json");
     let reference: serde_json::Value = serde_json::from_str(text).expect("JSON");
     let cases = reference["cases"].as_array().expect("cases");
-    let mut errors = [0.0; 2];
     for case in cases {
         let number = |name: &str| case[name].as_f64().expect("a number");
         let law = if number("power") == 1.0 { "gran/hooke/history" } else { "paper" };
         let contact = contact(law, [number("kappa"), number("psi"), 0.0, 0.0]);
         let reduction = Reduction { mu: number("mu"), alpha: number("alpha") };
         let dt = undamped_contact_time(contact.law()) / 1e4;
-        let found = [Scheme::Lammps, Scheme::SynchronizedVerlet].map(|scheme| {
+        for scheme in [Scheme::Lammps, Scheme::SynchronizedVerlet] {
             let stepping = Stepping { scheme, overlap: number("overlap"), reduction };
             let found = step(&contact, dt, 0.5, &stepping, 10.0).expect("an end");
             let off = (found.eps_t - number("eps_t")).abs();
             let apart = (found.eps_n - number("eps_n")).abs();
             assert!(off.max(apart) < 2e-3, "{scheme:?} {found:?} {case}");
-            off.max(apart)
-        });
-        for (sum, found) in errors.iter_mut().zip(found) {
-            *sum += found;
         }
         // With a small overlap it is a normal that stands still.
         let still = step(&contact, dt, 0.5, &Stepping::default(), 10.0).expect("an end");
@@ -248,8 +243,6 @@ fn turning_contacts_are_those_of_another_program() {
     let found = step(&hooke, 1e-4, 0.5, &stepping, 4.0).expect("an end");
     let rounded = [found.eps_t, found.eps_n].map(|number| format!("{number:.2}"));
     assert_eq!(rounded, ["0.14", "0.82"]);
-    // What belongs to the middle of a step is more accurate there.
-    assert!(errors[1] < errors[0], "{errors:?}");
 }
 
 /// Without friction and at grazing impacts spheres pass each other.
