@@ -270,12 +270,12 @@ fn the_same_on_any_number_of_threads() {
 }
 
 /// 5 mm of aluminium oxide on a wall under a law, with a coefficient of friction and other constants.
-fn sphere_under(law: Law, constants: Constants) -> FittedBodies {
+fn sphere_under(law: Law, constants: &Constants) -> FittedBodies {
     let material =
         Material { young_modulus_pa: 380e9, poisson_ratio: 0.23, density_kg_per_m3: 4e3 };
     let sphere = Sphere::homogeneous(0.0025, &material);
     let wall = Body::Wall(Wall { elasticity: None });
-    let forces = Forces::new(law, &constants).unwrap();
+    let forces = Forces::new(law, constants).unwrap();
     FittedBodies::of_sphere(&sphere, BodyPair::new(&sphere, &wall, forces).unwrap())
 }
 
@@ -308,7 +308,7 @@ fn friction_that_decays_is_fitted() {
         let (dynamic_friction, friction_decay_s_per_m) = rest;
         let usual = constants(friction, stiffness);
         let constants = Constants { dynamic_friction, friction_decay_s_per_m, ..usual };
-        sphere_under(Law::PAPER, constants)
+        sphere_under(Law::PAPER, &constants)
     };
     let found = recovered(&decaying(0.3, 6e7), decaying(0.2, 1e7));
     let best = &found.minima[0];
@@ -349,7 +349,7 @@ fn adhesion_is_fitted_where_bodies_separate() {
     let law = Law { tangential: Tangential::Constant, ..jkr };
     let grains = |friction, stiffness, gamma| {
         let usual = constants(friction, stiffness);
-        sphere_under(law, Constants { surface_energy_j_per_m2: Some(gamma), ..usual })
+        sphere_under(law, &Constants { surface_energy_j_per_m2: Some(gamma), ..usual })
     };
     let found = recovered(&grains(0.3, 6e7, 3700.0), grains(0.2, 1e7, 3700.0));
     let best = &found.minima[0];
