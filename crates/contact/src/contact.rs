@@ -102,8 +102,8 @@ impl Contact {
             }
             if law.remembers() && !steady {
                 let phrase = "has a hysteretic force and a spring that depends on the overlap";
-                let expected = "a spring of constant stiffness that is not rescaled, or Mindlin's of \
-                                bodies that yield, whose contact radius is known";
+                let expected = "a spring of constant stiffness that is not rescaled, or Mindlin's \
+                                of bodies that yield, whose contact radius is known";
                 return Err(InvalidValue::phrase("the law", phrase, expected));
             }
         }

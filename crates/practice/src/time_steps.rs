@@ -65,13 +65,13 @@ fn is_zero(value: &f64) -> bool {
 
 /// Measures the errors of all time steps, on the threads of the current pool.
 ///
-/// It takes about 15 ns for each step of each contact, ten times as long with JKR, and memory for 40
-/// bytes times impacts times phases. A time step that occurs twice is measured once. The results without steps are good to
-/// about 1e-12: errors of this size may come from either.
+/// It takes about 15 ns for each step of each contact, ten times as long with JKR, and memory for
+/// 40 bytes times impacts times phases. A time step that occurs twice is measured once. The results
+/// without steps are good to about 1e-12: errors of this size may come from either.
 ///
 /// # Errors
-/// [`TimeStepsError`]: the settings are out of range, an impact cannot be computed without steps, or
-/// adhesion holds its bodies together, so that there is no restitution to compare with.
+/// [`TimeStepsError`]: the settings are out of range, an impact cannot be computed without steps,
+/// or adhesion holds its bodies together, so that there is no restitution to compare with.
 pub fn run(settings: &TimeStepSettings, progress: Report<'_>) -> Result<TimeSteps, TimeStepsError> {
     settings.validate()?;
     let mut steps = settings.steps_per_contact.clone();

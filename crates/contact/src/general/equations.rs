@@ -51,8 +51,8 @@ pub(crate) struct Equations {
     hysteresis: Option<Hysteresis>,
     /// The factor of a hysteretic force while the overlap falls, or 1.
     rebound: f64,
-    /// The factor of Mindlin's stiffness while the overlap of yielded bodies falls, or 1: the contact
-    /// radius is more than u there.
+    /// The factor of Mindlin's stiffness while the overlap of yielded bodies falls, or 1: the
+    /// contact radius is more than u there.
     widened: f64,
     kappa: f64,
     damping: f64,

@@ -44,8 +44,8 @@ pub struct FittedCurve {
     pub quantity: Measured,
     /// The index of the minimum.
     pub minimum: usize,
-    /// Angles from the normal in degrees, and the quantity as [`Measured::shown`], up to the angle at
-    /// which adhesion holds the bodies together.
+    /// Angles from the normal in degrees, and the quantity as [`Measured::shown`], up to the angle
+    /// at which adhesion holds the bodies together.
     pub points: Vec<(f64, f64)>,
 }
 

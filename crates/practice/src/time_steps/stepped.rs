@@ -65,10 +65,10 @@ const LONGEST: f64 = 10.0;
 /// do it, with a force that is kept from attracting until the overlap vanishes. Without steps both
 /// are the same.
 ///
-/// `None` if spheres that turn pass each other in a step, if `dt` is not a finite number above 0, if
-/// `phase` is not from 0 to below 1, if the contact has not ended after ten times `duration` (its
-/// duration without steps) or after 10⁹ steps, as where adhesion holds the bodies together, or if
-/// numbers are no longer finite.
+/// `None` if spheres that turn pass each other in a step, if `dt` is not a finite number above 0,
+/// if `phase` is not from 0 to below 1, if the contact has not ended after ten times `duration`
+/// (its duration without steps) or after 10⁹ steps, as where adhesion holds the bodies together, or
+/// if numbers are no longer finite.
 pub fn step(
     contact: &Contact,
     dt: f64,

@@ -17,8 +17,8 @@
 //! its velocity is measured, and the tangential force along the tangent at the end of the step.
 //!
 //! Source: LAMMPS, `granular_model.cpp` (as of pull request 4351, and as it runs in the version of
-//! 22 July 2025), where history is kept in size as it is turned into the tangential plane. Müller and Pöschel, Granular Matter 14, 115 (2012), have shown
-//! what turning changes without friction.
+//! 22 July 2025), where history is kept in size as it is turned into the tangential plane. Müller
+//! and Pöschel, Granular Matter 14, 115 (2012), have shown what turning changes without friction.
 
 use stickslip_model::{Contact, Law, Normal, Reduction};
 use stickslip_tracer::Point;

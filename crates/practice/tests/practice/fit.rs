@@ -269,7 +269,7 @@ fn the_same_on_any_number_of_threads() {
     assert_eq!(on(1), on(3));
 }
 
-/// 5 mm of aluminium oxide on a wall under a law, with a coefficient of friction and other constants.
+/// 5 mm of aluminium oxide on a wall under a law.
 fn sphere_under(law: Law, constants: &Constants) -> FittedBodies {
     let material =
         Material { young_modulus_pa: 380e9, poisson_ratio: 0.23, density_kg_per_m3: 4e3 };
