@@ -95,7 +95,8 @@ class Surface:
     friction: float
     #: Stiffness of the tangential spring in kg/s², where it is constant.
     tangential_stiffness_kg_per_s2: Given = None
-    #: Damping time A of the normal force in s.
+    #: Damping time A of the normal force in s: 3/2 of the dissipative constant of Brilliantov and
+    #: Pöschel with Hertz' force.
     damping_time_s: Given = None
     #: Stiffness of a linear normal force in kg/s².
     normal_stiffness_kg_per_s2: Given = None

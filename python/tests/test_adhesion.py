@@ -62,6 +62,24 @@ def test_bodies_in_si_units() -> None:
         stickslip.impact(bodies, [0.1, 0.2], 0.05)
 
 
+def test_time_steps_are_those_of_lammps() -> None:
+    for case in json.loads(DATA.read_text())["cases"]:
+        if case["adheres"] or (case["eta"], case["tangential"]) != ("viscoelastic", "mindlin"):
+            continue
+        name = f"granular/{case['normal']}/viscoelastic/mindlin"
+        terms = {**law(case["pull_off"], name), "history": case["history"]}
+        terms["rescaled"] = case["rescaled"]
+        numbers = [case[it] for it in ("kappa", "psi", "damping")]
+        common: dict[str, object] = {"law": terms, "tangential_damping": case["tangential_damping"]}
+        eps_n = stickslip.collide(*numbers, **common).eps_n  # type: ignore[arg-type]
+        steps = stickslip.timestep(
+            *numbers, **common, steps=[20], phases=1, overlap=0.01, mu=0.3  # type: ignore[arg-type]
+        )
+        assert abs(steps.eps_n.worst[0] - abs(case["in_steps"]["20"][0] - eps_n)) < 1e-9
+    with pytest.raises(stickslip.ComputationError, match="stay together"):
+        stickslip.timestep(18, 0.6, law=law(5.0))
+
+
 def test_what_is_not_computed_is_refused() -> None:
     with pytest.raises(ValueError, match="without pull-off"):
         stickslip.collide(3, 0.4, law=NAME)

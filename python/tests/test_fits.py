@@ -46,6 +46,23 @@ def test_the_example_in_si_units() -> None:
         found.input("mfix", bodies)
 
 
+def test_friction_that_decays() -> None:
+    angles = np.radians(ANGLES[1:5])
+    eps_t = [
+        stickslip.collide(
+            6.0 * np.cos(angle) ** -0.4,
+            np.tan(angle) * (2 / 7) / 0.2,
+            law={"friction": {"dynamic": 0.5, "decay": np.cos(angle)}},
+        ).eps_t
+        for angle in angles
+    ]
+    data = {"centre_impact_angle_deg": ANGLES[1:5], "eps_t": eps_t}
+    decaying = {"friction": {"dynamic": 0.5, "decay": 1.0}}
+    found = stickslip.fit(data, free=["mu"], kappa=6.0, ranges={"mu": (0.1, 0.4)}, law=decaying)
+    assert abs(found.best.mu - 0.2) < 1e-7
+    assert "velocity reverses" in found.data["course"]["untraced"]
+
+
 def test_missing_values_and_errors() -> None:
     data = scaled(6.0, 0.2)
     data["eps_t"] = data["eps_t"].copy()

@@ -214,6 +214,9 @@ def test_hysteretic_forces() -> None:
 def test_bodies_that_yield() -> None:
     assert stickslip.collide(3, 0.4, 0.9, law="thornton").eps_n == pytest.approx(1, abs=1e-12)
     found = stickslip.collide(3, 0.4, 4, law="thornton")
+    mindlin = {**stickslip.laws()["thornton"].law, "tangential": "mindlin"}
+    other = stickslip.collide(3, 0.4, 4, law=mindlin)
+    assert other.eps_n == pytest.approx(found.eps_n, abs=1e-12) and other.eps_t != found.eps_t
     assert found.eps_n == pytest.approx(0.8122788724014045, abs=1e-12)
     assert stickslip.restitution(found.eps_n, "thornton").damping == pytest.approx(4, rel=1e-11)
     grain = stickslip.Sphere(1e-3, stickslip.Material(210e9, 0.3, 7850))

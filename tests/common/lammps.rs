@@ -1,4 +1,5 @@
-//! Collisions of LAMMPS, from `lammps_laws.json`. Several packages share this file.
+//! Collisions of LAMMPS, from `lammps_laws.json` and `lammps_adhesion.json`. Several packages share
+//! this file.
 
 use serde_json::Value;
 use stickslip_model::{Contact, ContactEnd, Damping, HistoryOf, Law, Normal, Tangential};
@@ -34,5 +35,31 @@ pub fn contact(case: &Value) -> Contact {
     let psi = number("g0") * ALPHA / number("mu");
     Contact::new(number("kappa") / ALPHA, psi, damping)
         .and_then(|contact| contact.with_law(law, number("xt") / ALPHA))
+        .expect("valid parameters")
+}
+
+/// The contact of a case of `adhesive_contacts.json` or `lammps_adhesion.json`.
+pub fn adhesive_contact(case: &Value) -> Contact {
+    let number = |name: &str| case[name].as_f64().expect("a value");
+    let jkr = case["normal"] == "jkr";
+    let law = Law {
+        normal: if jkr { Normal::Jkr } else { Normal::Dmt },
+        damping: if case["eta"] == "linear" { Damping::Linear } else { Damping::Viscoelastic },
+        tangential: match case["tangential"].as_str().expect("a value") {
+            "mindlin" => Tangential::Mindlin,
+            _ => Tangential::Constant,
+        },
+        history: match case["history"].as_str().expect("a value") {
+            "displacement" => HistoryOf::Displacement,
+            "force" => HistoryOf::Force,
+            _ => HistoryOf::None,
+        },
+        rescaled: case["rescaled"] == true,
+        end: if jkr && case["end"] == "force" { ContactEnd::Force } else { ContactEnd::Overlap },
+        pull_off: number("pull_off"),
+        ..Law::PAPER
+    };
+    Contact::new(number("kappa"), number("psi"), number("damping"))
+        .and_then(|contact| contact.with_law(law, number("tangential_damping")))
         .expect("valid parameters")
 }

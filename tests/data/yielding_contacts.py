@@ -4,8 +4,13 @@ With the overlap x, its rate v, and x_y where yield begins, ½ (1/a)² = (2/5) x
 
     F = x^{3/2} up to x_y, then its tangent, and √r (x − x0)^{3/2} behind greatest compression,
     where x − x0 is x/r, and F the same: r = x^{3/2}/F
-    dx/dt = v    dv/dt = −F    dw/dt = −Q
-    stick: dQ/dt = κw, |Q| ≤ F   slip: Q = ±F, until ±κw falls below dF/dt
+    dx/dt = v    dv/dt = −F    dw/dt = −Q    |Q| ≤ F
+
+Q is κ y with dy/dt = w, or with Mindlin's stiffness κ r_c y, or q with dq/dt = κ r_c w. The contact
+radius r_c is √x, and √(r (x − x0)) behind greatest compression, where a rescaled y or q also falls
+as r_c does. In all, dQ/dt = k w + m Q (dr_c/dt)/r_c in stick, with m = 0, 1 or 2. Slip ends where
+±dQ/dt, as it would be in stick, falls below dF/dt. While the overlap grows, y or q is integrated,
+and Q behind.
 
 Each phase is integrated by scipy's DOP853 with steps of at most 0.01/(1 + √κ) of a time unit, and
 ends where one of its conditions changes sign. The greatest overlap is that of the integration.
@@ -20,6 +25,7 @@ import random
 from scipy.integrate import solve_ivp
 
 COUNT, SEED = 100, 1997
+MINDLIN = 60
 
 
 class Force:
@@ -44,6 +50,10 @@ class Force:
             return 1.5 * math.sqrt(self.radius * max(x - self.left, 0.0)) * v
         return (self.slope() if self.yielded else 1.5 * math.sqrt(max(x, 0.0))) * v
 
+    def radius_of(self, x):
+        """The contact radius."""
+        return math.sqrt(max(self.radius * (x - self.left), 0.0) if self.falls else max(x, 0.0))
+
     def turn(self, x):
         if self.yielded:
             self.radius = x**1.5 / self(x)
@@ -51,18 +61,34 @@ class Force:
         self.falls = True
 
 
-def collide(kappa, psi, a):
+def collide(kappa, psi, a, mindlin=False, history="displacement", rescaled=False):
     force = Force(a)
-    side, phases = 1.0, "+"
+    kept = mindlin and history == "force"
+    sticks_first = mindlin and kappa * psi * (2.0 / 3.0 if kept else 1.0) < 1.0
+    side, phases = (0.0, "o") if sticks_first else (1.0, "+")
     t, y = 0.0, [0.0, 1.0, psi, 0.0]
+
+    def stiffness(x):
+        return kappa * (force.radius_of(x) if mindlin else 1.0)
+
+    def pull(y):
+        return y[3] if force.falls or kept else stiffness(y[0]) * y[3]
+
+    def growth(y, q):
+        """dQ/dt in stick."""
+        power = (mindlin and not kept) + (rescaled and force.falls)
+        rate = stiffness(y[0]) * y[2]
+        return rate + power * q * y[1] / (2.0 * (y[0] - force.left)) if power and q else rate
     while True:
 
         def slope(_, y):
             x, v, w, q = y
             f = force(x)
             if side:
-                return [v, -f, -side * f, side * force.rate(x, v)]
-            return [v, -f, -q, kappa * w]
+                return [v, -f, -side * f, 0.0]
+            if force.falls:
+                return [v, -f, -q, growth(y, q)]
+            return [v, -f, -pull(y), stiffness(x) * w if kept else w]
 
         def crest(_, y):
             return y[1]
@@ -74,13 +100,13 @@ def collide(kappa, psi, a):
             return y[0] - force.left if force.falls else 1.0
 
         def sticks(_, y):
-            return side * kappa * y[2] - force.rate(y[0], y[1]) if side else 1.0
+            return side * growth(y, side * force(y[0])) - force.rate(y[0], y[1]) if side else 1.0
 
         def slips(_, y):
-            return 1.0 if side else force(y[0]) - y[3]
+            return 1.0 if side else force(y[0]) - pull(y)
 
         def slips_back(_, y):
-            return 1.0 if side else force(y[0]) + y[3]
+            return 1.0 if side else force(y[0]) + pull(y)
 
         events = [end, sticks, slips, slips_back]
         if not force.falls:
@@ -98,13 +124,15 @@ def collide(kappa, psi, a):
         if fired is end:
             return {"eps_t": y[2] / psi, "eps_n": -y[1], "time": t, "itinerary": phases}
         if fired is crest:
-            y[1] = 0.0
+            y[1], y[3] = 0.0, pull(y)
             force.turn(y[0])
         elif fired is begins_to_yield:
             y[0] = force.yields_at
             force.yielded = True
         elif fired is sticks:
-            y[3], side, phases = side * force(y[0]), 0.0, phases + "o"
+            force_of = side * force(y[0])
+            y[3] = force_of if force.falls or kept else force_of / stiffness(y[0])
+            side, phases = 0.0, phases + "o"
         else:
             side = 1.0 if fired is slips else -1.0
             phases += "+" if side > 0.0 else "-"
@@ -121,6 +149,17 @@ def main():
             "damping": 0.3 * 3.0 ** draw.random() if index % 10 == 9 else 1.01 * 50.0 ** draw.random(),
         }
         cases.append(case | collide(case["kappa"], case["psi"], case["damping"]))
+    for index in range(MINDLIN):
+        case = {
+            "kappa": 0.05 * 2000.0 ** draw.random(),
+            "psi": 0.02 * 100.0 ** draw.random(),
+            "damping": 1.01 * 50.0 ** draw.random(),
+            "mindlin": True,
+            "history": ["displacement", "force"][index % 2],
+            "rescaled": index % 4 > 1,
+        }
+        names = ("kappa", "psi", "damping", "mindlin", "history", "rescaled")
+        cases.append(case | collide(*(case[name] for name in names)))
     about = "contacts of bodies that yield, in plain time: yielding_contacts.py"
     print(json.dumps({"about": about, "cases": cases}, indent=1))
 

@@ -92,7 +92,9 @@ impl Contact {
             let ok = tangential_damping == 0.0;
             let expected = "0, since a hysteretic force has no dashpot";
             in_range("tangential_damping", tangential_damping, expected, ok)?;
-            let steady = law.tangential == Tangential::Constant && !law.rescaled;
+            // The contact radius of yielded bodies is known, and that of others is no term.
+            let steady = law.damping == Damping::Yielding && law.tangential == Tangential::Mindlin
+                || law.tangential == Tangential::Constant && !law.rescaled;
             let elastic = law.damping != Damping::Yielding || law.normal == Normal::Hertz;
             if !elastic {
                 let phrase = "yields, and its force is not that of Hertz";
@@ -100,7 +102,8 @@ impl Contact {
             }
             if law.remembers() && !steady {
                 let phrase = "has a hysteretic force and a spring that depends on the overlap";
-                let expected = "a spring of constant stiffness that is not rescaled";
+                let expected = "a spring of constant stiffness that is not rescaled, or Mindlin's \
+                                of bodies that yield, whose contact radius is known";
                 return Err(InvalidValue::phrase("the law", phrase, expected));
             }
         }

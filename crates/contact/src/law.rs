@@ -124,7 +124,8 @@ pub enum Damping {
     /// which they do, the force follows its tangent behind the overlap x_y = (5/4a²)^{2/5}, and
     /// while the overlap falls, it is that of Hertz with a larger radius, √r (x − x₀)^{3/2}.
     /// Only for [`Normal::Hertz`]. This is the law of Thornton, J. Appl. Mech. 64, 383 (1997),
-    /// with a tangential spring of constant stiffness.
+    /// with a tangential spring of constant stiffness or of Mindlin's, where the contact radius
+    /// while the overlap falls is √(r (x − x₀)).
     Yielding,
 }
 
@@ -322,8 +323,12 @@ impl Law {
         let damped = self.damping.is_viscous();
         let normal = match (damped, self.limit_damping && self.end == ContactEnd::Overlap) {
             _ if self.damping == Damping::Yielding => {
-                "F = x^(3/2), x_y^(1/2) (3x − x_y)/2 where x > x_y, √r (x − x₀)^(3/2) where v < 0"
-                    .to_owned()
+                let force = "F = x^(3/2), x_y^(1/2) (3x − x_y)/2 where x > x_y, √r (x − x₀)^(3/2) \
+                             where v < 0";
+                let mindlin = self.tangential == Tangential::Mindlin && self.remembers();
+                let radius =
+                    if mindlin { "; r_c = √x, √(r (x − x₀)) where v < 0" } else { "" };
+                format!("{force}{radius}")
             }
             _ if self.damping.is_hysteretic() => {
                 let falling = match self.normal {
@@ -340,6 +345,7 @@ impl Law {
             if self.normal == Normal::Jkr { "x = r² − (4/3) √(F_po r), " } else { "" };
         let stiffness = match self.tangential {
             Tangential::Constant => "κ".to_owned(),
+            Tangential::Mindlin if self.damping == Damping::Yielding => "κ r_c".to_owned(),
             Tangential::Mindlin => format!("κ {root}"),
         };
         let tested = self.coulomb_test == CoulombTest::Total;

@@ -62,7 +62,7 @@ pub const SCHEMA: &str = "stickslip.fit/1";
 pub struct Fit {
     /// [`SCHEMA`].
     pub schema: &'static str,
-    /// The contact law.
+    /// The contact law, as the bodies have it: a decay of friction is that at their μ.
     pub law: Law,
     /// α.
     pub alpha: f64,

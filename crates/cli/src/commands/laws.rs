@@ -212,7 +212,7 @@ own keywords, with their equations, where these were read, and what was compared
 A law consists of eight terms, in JSON and here: normal (linear, hertz, dmt, jkr), damping (none, linear, \
 viscoelastic, tsuji, hysteretic, hardening, yielding), tangential (constant, mindlin), history (displacement, force, none), rescaled, \
 limit_damping (true, false), end (force, overlap), coulomb_test (total, spring). Every combination \
-is a law, but a hysteretic force goes with a spring of constant stiffness only, and one that yields is Hertz'. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
+is a law, but a hysteretic force goes with a spring of constant stiffness only, and one that yields is Hertz' and may have Mindlin's. Without history there is a dashpot alone, and κ has no effect; where the Coulomb test \
 holds for the spring alone, the dashpot acts in stick only.
 
 Quantities are scaled: x overlap, v its rate, w tangential velocity, F normal and Q tangential force, \

@@ -200,7 +200,11 @@ fn bad_data_and_options_are_refused() {
         (data, "--free kappa,mu --mu 0", "expected"),
         (data, "--free kappa,friction", "nothing that can be fitted is named"),
         (data, "--law yade/FrictPhys_CundallStrack --eps-n 0.9", "since this law has no damping"),
-        (data, "--dynamic-friction 0.5 --friction-decay 2", "which is not fitted"),
+        (
+            data,
+            "--law granular/dmt/mass_velocity/mindlin --pull-off 0.1 --free damping,mu --kappa 3",
+            "too much of it holds the bodies together",
+        ),
         (data, "--free damping,mu --kappa 3", "0 data of eps_n for 1 free"),
         (data, "--range kappa=0:3", "cannot be used; expected two rising numbers above 0"),
         (data, "--level 1", "level = 1.0 is out of range"),
@@ -211,4 +215,15 @@ fn bad_data_and_options_are_refused() {
         assert_eq!(ran.code, 2, "{text} {options}: {} {}", ran.stdout, ran.stderr);
         assert!(ran.stderr.contains(expected), "{text} {options}: {}", ran.stderr);
     }
+    // Boundaries of a friction that decays are not traced, and the fit is none the worse.
+    let workspace = Workspace::with_input(data);
+    let file = workspace.path("in.csv");
+    let decaying = "--free mu --kappa 3 --dynamic-friction 0.5 --friction-decay 2";
+    let ran = stickslip(&format!("fit {} {decaying}", file.display()));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(
+        ran.stdout.contains("not traced: the law has a friction that decays"),
+        "{}",
+        ran.stdout
+    );
 }

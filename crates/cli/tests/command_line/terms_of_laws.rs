@@ -71,7 +71,7 @@ fn decaying_friction_is_a_property_of_every_law() {
 
     for (command, expected) in [
         ("trace --kappa 1:4 --psi 0.3:2 --out atlas.json", "is not traced"),
-        ("table --kappa 1:4 --psi 0.3:2 --out table.h --prefix t", "of which no table is made"),
+        ("table --kappa 1:4 --psi 0.3:2 --out table.h --prefix t", "is not traced"),
     ] {
         let refused = directory.run(&format!("{command} {options}"));
         assert_ne!(refused.code, 0);
@@ -240,7 +240,6 @@ fn adhesion_is_computed_where_bodies_may_stay_together() {
         ("collide --kappa 3 --psi 1 --pull-off 0.1".to_owned(), "without adhesion"),
         (format!("collide --kappa 3 --psi 1 {name} --pull-off 0"), "above 0"),
         (format!("trace --kappa 1:2 --psi 0.5:1 --out atlas.json {scaled}"), "boundaries are"),
-        (format!("timestep --kappa 1:2 --psi 0.5:1 {scaled}"), "time steps are"),
         (format!("collide --kappa 3 --psi 1 --e-n 0.8 {scaled}"), "the damping of an e_n is"),
         ("laws granular/dmt/viscoelastic/mindlin --e-n 0.8".to_owned(), "has adhesion"),
     ] {
@@ -248,6 +247,17 @@ fn adhesion_is_computed_where_bodies_may_stay_together() {
         assert_eq!(refused.code, 2, "{command}: {}", refused.stderr);
         assert!(refused.stderr.contains(why), "{command}: {}", refused.stderr);
     }
+    let steps = json(&format!("timestep --kappa 1:2 --psi 0.5:1 --steps 20 {scaled}"));
+    assert_eq!(steps["rows"][0]["status"], "ok", "{steps}");
+    let ran = stickslip(&format!("timestep --bodies {bodies} {name} --steps 20"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let ran = stickslip(&format!("timestep --kappa 18 --psi 0.6 {name} --pull-off 5"));
+    assert_eq!(ran.code, 1, "{}", ran.stderr);
+    assert!(ran.stderr.contains("the bodies stay together"), "{}", ran.stderr);
+    let window = "--kappa 1:2 --psi 0.5:1 --out table.json";
+    let ran = directory.run(&format!("table {window} {scaled}"));
+    assert_eq!(ran.code, 2, "{}", ran.stderr);
+    assert!(ran.stderr.contains("boundaries are not computed"), "{}", ran.stderr);
     // Slow grains of a map have no restitution, and that is no failure.
     let map = "--normal 0:0.06 --tangential 0.1:0.2 --size 2x1 --out map.csv --plot map.svg";
     let mapped = directory.run(&format!("map --bodies {bodies} {name} {map}"));

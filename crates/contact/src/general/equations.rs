@@ -51,6 +51,9 @@ pub(crate) struct Equations {
     hysteresis: Option<Hysteresis>,
     /// The factor of a hysteretic force while the overlap falls, or 1.
     rebound: f64,
+    /// The factor of Mindlin's stiffness while the overlap of yielded bodies falls, or 1: the
+    /// contact radius is more than u there.
+    widened: f64,
     kappa: f64,
     damping: f64,
     /// The part of the tangential damping that Coulomb's limit holds for.
@@ -85,6 +88,7 @@ impl Equations {
         let a = if exponents.damped { contact.damping() } else { 0.0 };
         let hysteresis = Hysteresis::new(contact.law(), contact.damping());
         let rebound = hysteresis.map_or(1.0, |it| it.factor);
+        let widened = hysteresis.filter(|_| exponents.r > 0).map_or(1.0, |it| 1.0 / it.turned);
         let strong = a >= STRONG;
         let by_v = if strong { a.powi(-3) } else { 1.0 };
         let omega = if exponents.remembers { kappa.sqrt() } else { 0.0 };
@@ -96,6 +100,7 @@ impl Equations {
             decay: Decay::new(&contact.law().friction, velocity_unit),
             hysteresis,
             rebound,
+            widened,
             kappa,
             damping: a,
             tangential_damping,
@@ -127,6 +132,12 @@ impl Equations {
             return Self { tangential_damping, dashpot, tested, ..self };
         }
         Self { kappa: self.kappa * part, spring_rate: self.spring_rate * part, ..self }
+    }
+
+    /// The factor of the stiffness in a stage.
+    #[inline(always)]
+    fn stiffening(&self, stage: Stage) -> f64 {
+        if stage == Stage::Unloading { self.widened } else { 1.0 }
     }
 
     /// Whether there is no tangential force at all.
@@ -260,7 +271,7 @@ impl Equations {
         let (mut slope, _) = self.normal(mode.stage, u, y);
         let pull = self.pull(mode.stage, u, y);
         slope[W] = u[e.last + of.shared] * pull * (-f64::from(e.n) / self.velocity_unit);
-        slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
+        slope[SPRING] = u[of.beta] * y[W] * (self.spring_rate * self.stiffening(mode.stage));
         if self.dashpot > 0.0 {
             let per_w = f64::from(e.n) * self.dashpot / self.velocity_unit;
             slope[DASHPOT] = u[e.last + e.d] * y[W] * y[W] * per_w;
@@ -323,8 +334,9 @@ impl Equations {
         let per_unit = -n / self.velocity_unit;
         let k = e.last + of.shared;
         let dw = u[k] * pull * per_unit;
-        let dspring = u[of.beta] * y[W] * self.spring_rate;
-        let ddspring = (lowered(u, of.beta) * v * y[W] + u[of.beta] * dw) * self.spring_rate;
+        let spring_rate = self.spring_rate * self.stiffening(mode.stage);
+        let dspring = u[of.beta] * y[W] * spring_rate;
+        let ddspring = (lowered(u, of.beta) * v * y[W] + u[of.beta] * dw) * spring_rate;
         let spring = lifted(of.rho - of.shared, u, v, dv, Jet(y[SPRING], dspring, ddspring));
         let damping1 = lowered(u, e.d - of.shared) * v * y[W] + u[e.d - of.shared] * dw;
         let pull1 = spring.1 * self.spring_force + damping1 * self.dashpot;
@@ -410,7 +422,8 @@ impl Equations {
         let push = self.push(mode.stage, u, y);
         // One power more than that of the term, so that it is not negative.
         let power = |more: u8| u[more - of.leading];
-        let mut sum = power(e.last + e.r + 1) * w * (n * self.kappa * side);
+        let kappa = self.kappa * self.stiffening(mode.stage);
+        let mut sum = power(e.last + e.r + 1) * w * (n * kappa * side);
         let ahead = f64::from(of.rho) - f64::from(e.d);
         if ahead != 0.0 {
             let behind = self.rubbed(mode, y, push * sign)
@@ -522,12 +535,15 @@ impl Equations {
     /// overlap that a hysteretic force is left with.
     pub fn turn(&self, y: &[f64; STATE]) -> [f64; STATE] {
         let e = self.exponents;
-        let carried = i32::from(e.of(Stage::Main).rho) - i32::from(e.of(Stage::Unloading).rho);
+        let [before, behind] = [Stage::Main, Stage::Unloading].map(|it| i32::from(e.of(it).rho));
         let mut y = *y;
-        y[SPRING] *= y[U].powi(carried);
+        y[SPRING] *= y[U].powi(before - behind);
         if let Some(Hysteresis { turned, lost, .. }) = self.hysteresis {
             // The force is the same before and behind, and all energy is in the compression.
             y[U] *= turned;
+            if e.remembers {
+                y[SPRING] *= turned.powi(-behind);
+            }
             y[DAMPING] = 0.5 * lost;
         }
         y

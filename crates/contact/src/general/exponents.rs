@@ -118,7 +118,7 @@ impl Exponents {
     /// The powers of a stage.
     #[inline(always)]
     pub fn of(&self, stage: Stage) -> OfStage {
-        if stage == Stage::Main { self.loading } else { self.unloading }
+        if matches!(stage, Stage::Main | Stage::Yielding) { self.loading } else { self.unloading }
     }
 }
 

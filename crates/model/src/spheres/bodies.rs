@@ -137,7 +137,8 @@ pub struct Surface {
     pub friction: f64,
     /// Stiffness k_t of the tangential spring in kg/s².
     pub tangential_stiffness_kg_per_s2: f64,
-    /// Damping time A in s in F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A for this A.
+    /// Damping time A in s in F_n = ρ(ξ^{3/2} + A √ξ ξ̇). The dissipative constant of Brilliantov
+    /// and Pöschel, which has (3/2) before it in the force, is 2/3 of this A, and not its name.
     pub damping_time_s: f64,
 }
 

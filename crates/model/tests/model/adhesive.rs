@@ -1,13 +1,13 @@
 //! Adhesion: DMT and JKR with friction, and bodies that stay together.
 
-use serde_json::Value;
 use stickslip_model::spheres::{Body, BodyPair, Constants, Encounter, Forces, Material, Sphere};
 use stickslip_model::{
-    Collision, CollisionError, Contact, ContactEnd, Damping, Engine, HistoryOf, Law, Normal,
-    Tangential, Tolerances, presets, restitution,
+    Collision, CollisionError, Contact, ContactEnd, Damping, Engine, Law, Normal, Tolerances,
+    presets, restitution,
 };
 
 use crate::common::file;
+use crate::lammps::adhesive_contact;
 use crate::laws::collide;
 
 fn named(name: &str, pull_off: f64) -> Law {
@@ -18,30 +18,6 @@ fn contact([kappa, psi, damping, b]: [f64; 4], law: Law) -> Contact {
     Contact::new(kappa, psi, damping).and_then(|it| it.with_law(law, b)).unwrap()
 }
 
-/// The contact of a case of a file.
-fn of_case(case: &Value) -> Contact {
-    let number = |name: &str| case[name].as_f64().unwrap();
-    let jkr = case["normal"] == "jkr";
-    let law = Law {
-        normal: if jkr { Normal::Jkr } else { Normal::Dmt },
-        damping: if case["eta"] == "linear" { Damping::Linear } else { Damping::Viscoelastic },
-        tangential: match case["tangential"].as_str().unwrap() {
-            "mindlin" => Tangential::Mindlin,
-            _ => Tangential::Constant,
-        },
-        history: match case["history"].as_str().unwrap() {
-            "displacement" => HistoryOf::Displacement,
-            "force" => HistoryOf::Force,
-            _ => HistoryOf::None,
-        },
-        rescaled: case["rescaled"] == true,
-        end: if jkr && case["end"] == "force" { ContactEnd::Force } else { ContactEnd::Overlap },
-        pull_off: number("pull_off"),
-        ..Law::PAPER
-    };
-    contact(["kappa", "psi", "damping", "tangential_damping"].map(number), law)
-}
-
 /// 100 contacts of each kind, integrated in plain time by another program.
 #[test]
 fn adhesive_contacts_are_those_of_another_program() {
@@ -49,7 +25,7 @@ fn adhesive_contacts_are_those_of_another_program() {
     let cases = reference["cases"].as_array().unwrap();
     let (mut ended, mut wrong) = (0, Vec::new());
     for case in cases {
-        let found = collide(of_case(case));
+        let found = collide(adhesive_contact(case));
         assert_eq!(found.adheres, case["adheres"] == true, "{case}");
         if found.adheres {
             continue;
@@ -76,7 +52,7 @@ fn adhesive_contacts_are_those_of_lammps() {
     let reference = file("lammps_adhesion");
     let cases = reference["cases"].as_array().unwrap();
     for case in cases {
-        let contact = of_case(case);
+        let contact = adhesive_contact(case);
         let found = collide(contact);
         assert_eq!(found.adheres, case["adheres"] == true, "{case}");
         if !found.adheres {

@@ -96,7 +96,8 @@ impl FittedBodies {
         }
     }
 
-    /// The pair with other values.
+    /// The pair with other values. Friction that decays keeps μ_d/μ_s, and the decay β in s/m, or B
+    /// in scaled units.
     pub(super) fn with(&self, units: &Units, values: &Values) -> BodyPair {
         let damped = units.damping_per_s > 0.0;
         let surface = Surface {
@@ -105,7 +106,11 @@ impl FittedBodies {
             damping_time_s: if damped { values.damping / units.damping_per_s } else { 0.0 },
         };
         let tangential_damping_ratio = values.tangential_damping * self.pair.alpha;
-        BodyPair { surface, tangential_damping_ratio, ..self.pair }
+        let mut law = self.pair.law;
+        if !self.are_scaled() {
+            law.friction.decay *= values.mu / self.pair.surface.friction;
+        }
+        BodyPair { surface, tangential_damping_ratio, law, ..self.pair }
     }
 
     /// κ at normal incidence of the tangential stiffness that Mindlin's theory gives the materials:

@@ -1,6 +1,7 @@
 //! The fit as a function of the angle, and where the switches change along it.
 
-use stickslip_model::{CollisionFailure, Engine};
+use stickslip_model::{CollisionError, CollisionFailure, Engine};
+use stickslip_plane::atlas::{AtlasError, ObliqueBoundaries};
 use stickslip_plane::{Oblique, Range};
 
 use super::FitError;
@@ -17,6 +18,9 @@ pub struct FittedCourse {
     pub boundaries: Vec<Boundary>,
     /// Whether the tracer of boundaries could explain everything that it saw.
     pub resolved: bool,
+    /// Why no boundaries are traced, if they are not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub untraced: Option<String>,
     /// What the model says of each measured quantity, at the best and the next minima.
     #[serde(skip)]
     pub curves: Vec<FittedCurve>,
@@ -40,7 +44,8 @@ pub struct FittedCurve {
     pub quantity: Measured,
     /// The index of the minimum.
     pub minimum: usize,
-    /// Angles from the normal in degrees, and the quantity as [`Measured::shown`].
+    /// Angles from the normal in degrees, and the quantity as [`Measured::shown`], up to the angle
+    /// at which adhesion holds the bodies together.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -69,7 +74,12 @@ impl FittedCourse {
         let right = std::f64::consts::FRAC_PI_2;
         let angles_rad = Range { low: 0.5 * least, high: 0.5 * (most + right) };
         let oblique = Oblique::new(bodies.with(units, best), units.speed_m_per_s)?;
-        let found = oblique.boundaries(angles_rad).map_err(Box::new)?;
+        let (found, untraced) = match oblique.boundaries(angles_rad) {
+            Err(AtlasError::Parameter(reason)) => {
+                (ObliqueBoundaries { angles_rad: Vec::new(), resolved: false }, Some(reason))
+            }
+            found => (found.map_err(Box::new)?, None),
+        };
         let ends = [&[angles_rad.low], &found.angles_rad[..], &[angles_rad.high]].concat();
         let itinerary = |ends: &[f64]| {
             let contact = oblique.contact(f64::midpoint(ends[0], ends[1]))?;
@@ -88,7 +98,8 @@ impl FittedCourse {
         // Some laws have boundaries on which only the order of other events changes.
         let boundaries = boundaries.filter(|it| it.below != it.above).collect();
         let curves = curves(bodies, units, data, minima, angles_rad)?;
-        Ok(Some(Self { angles_rad, boundaries, resolved: found.resolved, curves }))
+        let (resolved, untraced) = (found.resolved, untraced.map(|reason| reason.to_string()));
+        Ok(Some(Self { angles_rad, boundaries, resolved, untraced, curves }))
     }
 }
 
@@ -106,10 +117,17 @@ fn curves(
             let point = |index: u32| {
                 let part = f64::from(index) / f64::from(POINTS - 1);
                 let angle = angles_rad.low + part * (angles_rad.high - angles_rad.low);
-                let value = predicted_at(bodies, units, values, quantity, angle)?;
-                Ok((angle.to_degrees(), quantity.shown(value)))
+                match predicted_at(bodies, units, values, quantity, angle) {
+                    Ok(value) => Ok(Some((angle.to_degrees(), quantity.shown(value)))),
+                    Err(FitError::Contact(CollisionFailure {
+                        source: CollisionError::Adheres { .. },
+                        ..
+                    })) => Ok(None),
+                    Err(error) => Err(error),
+                }
             };
-            let points: Result<Vec<_>, FitError> = (0..POINTS).map(point).collect();
+            let points: Result<Vec<_>, FitError> =
+                (0..POINTS).filter_map(|index| point(index).transpose()).collect();
             curves.push(FittedCurve { quantity, minimum, points: points? });
         }
     }

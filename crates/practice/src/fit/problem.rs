@@ -1,6 +1,6 @@
 //! What the model says of the data.
 
-use stickslip_model::{Collider, Collision, CollisionFailure, Contact, Engine};
+use stickslip_model::{Collider, Collision, CollisionError, CollisionFailure, Contact, Engine};
 
 use super::FitError;
 use super::bodies::{FittedBodies, Units, Values};
@@ -76,7 +76,7 @@ impl Problem {
     /// Appends what the model says of each datum.
     ///
     /// # Errors
-    /// An impact cannot be computed.
+    /// An impact cannot be computed, or adhesion holds its bodies together.
     pub fn predict(&self, values: &Values, predicted: &mut Vec<f64>) -> Result<(), FitError> {
         let mut collision = None;
         for impact in &self.impacts {
@@ -85,6 +85,10 @@ impl Problem {
             Engine::Auto
                 .collide_into(contact, collision)
                 .map_err(|source| CollisionFailure::new(&contact, source))?;
+            if collision.adheres {
+                let held = CollisionError::Adheres { time: collision.contact_time };
+                return Err(CollisionFailure::new(&contact, held).into());
+            }
             let collided = self.collided(impact, collision.eps_n, collision.eps_t());
             predicted.extend(impact.quantities.iter().map(|quantity| collided.value(*quantity)));
         }

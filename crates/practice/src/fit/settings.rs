@@ -80,13 +80,6 @@ impl FitSettings {
         InvalidValue::check("mu", friction, above, friction > 0.0)?;
         let ok = tangential_stiffness_kg_per_s2 > 0.0 || !self.law().remembers();
         InvalidValue::check("kappa", tangential_stiffness_kg_per_s2, above, ok)?;
-        self.law().require_no_adhesion("a fit is")?;
-        let decays = !self.law().friction.is_constant();
-        let phrase = "has a friction that decays with the velocity, which is not fitted";
-        let other = InvalidValue::phrase("the law", phrase, "one coefficient of friction");
-        if decays {
-            return Err(other);
-        }
         self.valid_free()?;
         self.valid_damping()?;
         let stages = [(true, self.free.contains(&Free::Damping).into())];
@@ -160,6 +153,10 @@ impl FitSettings {
         }
         if free && !damped {
             return Err(without_damping(Free::Damping));
+        }
+        if free && law.normal.is_adhesive() {
+            let phrase = "is free, and with adhesion too much of it holds the bodies together";
+            return Err(InvalidValue::phrase("damping", phrase, "a given damping"));
         }
         if free && self.ranges.damping.high >= law.endless_from() {
             let high = self.ranges.damping.high;

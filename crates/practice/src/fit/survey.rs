@@ -12,7 +12,7 @@ use super::free::Free;
 use super::intervals::{interval, threshold};
 use super::local::{Bottom, different, of};
 use super::normal;
-use super::problem::Problem;
+use super::problem::{Problem, predicted_at};
 use super::scan::{Line, Lines, candidates};
 use super::settings::FitSettings;
 use super::{Fit, FitError, Mindlin, Minimum, Residual, RootMeanSquare, SCHEMA};
@@ -112,7 +112,7 @@ impl Survey {
             level: settings.level,
             threshold,
             damping: self.damping.clone(),
-            eps_n: restitution::eps_n(settings.bodies.pair.law, self.fixed.damping)?,
+            eps_n: self.eps_n()?,
             residuals: self.residuals(&minima[0].values)?,
             minima,
             intervals,
@@ -208,6 +208,15 @@ impl Survey {
             })
             .collect();
         lines.into_iter().collect()
+    }
+
+    /// ε_n at normal incidence.
+    fn eps_n(&self) -> Result<f64, FitError> {
+        let FitSettings { bodies, .. } = &self.settings;
+        if bodies.pair.law.normal.is_adhesive() {
+            return predicted_at(bodies, &self.units, &self.fixed, Measured::EpsN, 0.0);
+        }
+        Ok(restitution::eps_n(bodies.pair.law, self.fixed.damping)?)
     }
 
     fn unfitted(&self) -> Result<Bottom, FitError> {

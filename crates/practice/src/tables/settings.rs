@@ -68,14 +68,6 @@ impl TableWindow {
         }
     }
 
-    /// The law of the window's collisions.
-    fn law(&self) -> Law {
-        match *self {
-            Self::Scaled { law, .. } => law,
-            Self::Velocities { pair, .. } => pair.law,
-        }
-    }
-
     /// Whether the collisions of the window are integrated.
     fn is_integrated(&self) -> bool {
         let (law, damped, tangential_damping) = match *self {
@@ -136,12 +128,6 @@ impl TableSettings {
         if !(finest..=coarsest).contains(&self.bound) {
             let expected = format!("{finest:e} to {coarsest:e}");
             return Err(InvalidValue::new("bound", self.bound, expected).into());
-        }
-        self.window.law().require_no_adhesion("a table is")?;
-        if !self.window.law().friction.is_constant() {
-            let phrase = "has a friction that decays with the velocity, of which no table is made";
-            let expected = "one coefficient of friction";
-            return Err(InvalidValue::phrase("the law", phrase, expected).into());
         }
         for (name, Range { low, high }) in self.window.names().into_iter().zip(self.window.sides())
         {

@@ -51,9 +51,6 @@ impl TimeStepSettings {
         if impacts == 0 {
             return Err(invalid("contacts:", "0 impacts", "at least one".to_owned()));
         }
-        for contact in &self.contacts {
-            contact.law().require_no_adhesion("time steps are")?;
-        }
         let steps = &self.steps_per_contact;
         if steps.is_empty() {
             return Err(invalid("steps:", "0 time steps", "at least one".to_owned()));

@@ -4,10 +4,11 @@ use stickslip_model::{
     Contact, ContactEnd, CoulombTest, Damping, HistoryOf, Law, Normal, Reduction, Tangential, exact,
 };
 
+use super::adhesion::Adhesion;
 use super::turning::Turning;
 
-/// The duration of a contact with the normal force of `law` and without damping, in scaled units:
-/// π for a linear force, 3.218… for Hertz'.
+/// The duration of a contact with the normal force of `law` and without damping and adhesion, in
+/// scaled units: π for a linear force, 3.218… for Hertz'.
 pub fn undamped_contact_time(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => std::f64::consts::PI,
@@ -22,7 +23,7 @@ pub struct Stepped {
     pub eps_n: f64,
     /// Coefficient of tangential restitution ε_t; −1 is full reversal.
     pub eps_t: f64,
-    /// Number of steps with overlap, until the normal force is 0 for good.
+    /// Number of steps in contact, until the normal force is 0 for good.
     pub steps: u64,
     /// Largest (k dt² + 2 D dt)/4 over the steps and over both directions, with the stiffness k and
     /// the damping D at the overlap of the step. From 1 on, the oscillation of a spring is not
@@ -42,9 +43,9 @@ impl Stepped {
 pub struct Stepping {
     /// The scheme.
     pub scheme: Scheme,
-    /// The greatest overlap of the contact without damping and friction over the distance of the
-    /// centres, for two equal spheres without spins whose normal turns; 0 for a normal that stands
-    /// still, as on a wall. The result is that of the normal with which the contact began.
+    /// The greatest overlap of the contact without damping, friction and adhesion over the distance
+    /// of the centres, for two equal spheres without spins whose normal turns; 0 for a normal that
+    /// stands still, as on a wall. The result is that of the normal with which the contact began.
     pub overlap: f64,
     /// The numbers μ and α, of which the motion of turning spheres depends.
     pub reduction: Reduction,
@@ -64,10 +65,10 @@ const LONGEST: f64 = 10.0;
 /// do it, with a force that is kept from attracting until the overlap vanishes. Without steps both
 /// are the same.
 ///
-/// `None` if spheres that turn pass each other in a step, if the law has adhesion, if `dt` is not a
-/// finite number above 0, if `phase` is not from 0 to below 1, if the contact has not ended after
-/// ten times `duration` (its duration without steps) or after 10⁹ steps, or if numbers are no
-/// longer finite.
+/// `None` if spheres that turn pass each other in a step, if `dt` is not a finite number above 0,
+/// if `phase` is not from 0 to below 1, if the contact has not ended after ten times `duration`
+/// (its duration without steps) or after 10⁹ steps, as where adhesion holds the bodies together, or
+/// if numbers are no longer finite.
 pub fn step(
     contact: &Contact,
     dt: f64,
@@ -76,9 +77,6 @@ pub fn step(
     duration: f64,
 ) -> Option<Stepped> {
     let Stepping { scheme, overlap, reduction } = *stepping;
-    if contact.law().normal.is_adhesive() {
-        return None;
-    }
     if !(dt > 0.0 && dt.is_finite() && (0.0..1.0).contains(&phase)) {
         return None;
     }
@@ -101,7 +99,9 @@ pub fn step(
         } else {
             state.x += dt * state.v;
         }
-        if state.x > 0.0 {
+        // Adhesion may hold bodies that no longer overlap.
+        let last = rule.adhesion.filter(|_| steps > 0).map_or(0.0, |adhesion| adhesion.last);
+        if state.x > last {
             steps += 1;
             if steps as f64 > most {
                 return None;
@@ -134,7 +134,7 @@ struct State {
     w: f64,
     /// Elongation or force of the spring.
     history: f64,
-    /// √x one step before; 0 before the contact.
+    /// √x, or the contact radius, one step before; 0 before the contact.
     root: f64,
     /// Greatest overlap so far.
     greatest: f64,
@@ -143,6 +143,8 @@ struct State {
 /// What decides on forces.
 struct ForceRule {
     law: Law,
+    adhesion: Option<Adhesion>,
+    /// Whether the force is kept from attracting.
     limited: bool,
     kappa: f64,
     damping: f64,
@@ -156,10 +158,12 @@ struct ForceRule {
 impl ForceRule {
     fn new(contact: &Contact, dt: f64, scheme: Scheme) -> Self {
         let law = contact.law();
+        let adhesion = Adhesion::new(&law);
         Self {
             law,
+            adhesion,
             limited: law.limit_damping
-                || law.end == ContactEnd::Force
+                || law.end == ContactEnd::Force && adhesion.is_none()
                 || law.damping.is_hysteretic(),
             kappa: contact.kappa(),
             damping: contact.damping(),
@@ -174,12 +178,15 @@ impl ForceRule {
     /// [`Stepped::stiffness`] of the step. `None` where a limited force has vanished: the overlap
     /// falls in free flight, in which a force would attract until the end.
     fn advance(&mut self, state: &mut State) -> Option<f64> {
-        let Self { law, dt, .. } = *self;
-        let root = state.x.sqrt();
+        let Self { law, adhesion, dt, .. } = *self;
         state.greatest = state.greatest.max(state.x);
-        let [elastic, slope] = match law.damping {
-            Damping::Yielding => self.yielding(state),
-            _ => self.elastic(state),
+        let ([elastic, slope], root) = match (adhesion, law.damping) {
+            (Some(adhesion), _) => {
+                let radius = adhesion.radius(state.x);
+                (adhesion.elastic(radius), radius)
+            }
+            (None, Damping::Yielding) => self.yielding(state),
+            (None, _) => (self.elastic(state), state.x.sqrt()),
         };
         let eta = match law.damping {
             Damping::None | Damping::Hysteretic | Damping::Hardening | Damping::Yielding => 0.0,
@@ -196,7 +203,10 @@ impl ForceRule {
             Tangential::Mindlin => self.kappa * root,
         };
         let dashpot = self.tangential_damping * eta;
-        let limit = normal.abs() * law.friction.share(state.w);
+        let limit = match adhesion {
+            Some(Adhesion { pull_off, .. }) => (elastic + 2.0 * pull_off).abs(),
+            None => normal.abs() * law.friction.share(state.w),
+        };
         let tangential = self.tangential_force(state, (k, dashpot), limit, root);
         state.v -= dt * normal;
         state.w -= dt * tangential;
@@ -213,8 +223,8 @@ impl ForceRule {
         }
     }
 
-    /// The same of bodies that yield.
-    fn yielding(&self, state: &State) -> [f64; 2] {
+    /// The same of bodies that yield, and the contact radius.
+    fn yielding(&self, state: &State) -> ([f64; 2], f64) {
         let State { x, greatest, .. } = *state;
         let from = (1.25 / (self.damping * self.damping)).powf(0.4);
         let loading = |x: f64| {
@@ -222,13 +232,13 @@ impl ForceRule {
             [least * (1.5 * x - 0.5 * f64::min(x, from)), 1.5 * least]
         };
         if x == greatest || greatest <= from {
-            return loading(x);
+            return (loading(x), x.sqrt());
         }
         // With the radius r the overlap falls by the r-th part of the greatest one.
         let radius = greatest * greatest.sqrt() / loading(greatest)[0];
         let pushed = f64::max(0.0, x - greatest * (1.0 - 1.0 / radius));
         let root = (radius * pushed).sqrt();
-        [root * pushed, 1.5 * root]
+        ([root * pushed, 1.5 * root], root)
     }
 
     /// The part of the overlap that pushes, and the factor of the stiffness.
@@ -323,9 +333,9 @@ pub enum Scheme {
     /// `calc_force_dem.f`, `DTSOLID_TMP`). What else is special there was not compared.
     Elapsed,
     /// As [`Self::Lammps`], but velocities are taken along the normal in the middle of the step,
-    /// where they belong (`synchronized_verlet` of LAMMPS, pull request 4351; read in
-    /// `granular_model.cpp`, commit 14dc2fb). Without an [overlap](Stepping::overlap) it is the
-    /// same.
+    /// where they belong, and the normal force acts along it (`synchronized_verlet` of LAMMPS, pull
+    /// request 4351, compared with the version of 22 July 2025). Without an
+    /// [overlap](Stepping::overlap) it is the same.
     #[serde(rename = "synchronized_verlet")]
     SynchronizedVerlet,
 }

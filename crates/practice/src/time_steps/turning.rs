@@ -13,14 +13,17 @@
 //! small overlaps this is dv/dt = −F and dw/dt = −Q. Angular momentum is conserved:
 //! |r| V·t − μ D s/(1 − α) does not change.
 //!
-//! Source: LAMMPS, `granular_model.cpp` (commit 14dc2fb), where history is kept in size as it is
-//! turned into the tangential plane. Müller and Pöschel, Granular Matter 14, 115 (2012), have shown
-//! what turning changes without friction.
+//! With `synchronized_verlet` the normal force acts along the normal in the middle of the step, as
+//! its velocity is measured, and the tangential force along the tangent at the end of the step.
+//!
+//! Source: LAMMPS, `granular_model.cpp` (as of pull request 4351, and as it runs in the version of
+//! 22 July 2025), where history is kept in size as it is turned into the tangential plane. Müller
+//! and Pöschel, Granular Matter 14, 115 (2012), have shown what turning changes without friction.
 
 use stickslip_model::{Contact, Law, Normal, Reduction};
 use stickslip_tracer::Point;
 
-/// The greatest overlap without damping and friction, in scaled units.
+/// The greatest overlap without damping, friction and adhesion, in scaled units.
 fn greatest(law: Law) -> f64 {
     match law.normal {
         Normal::Linear => 1.0,
@@ -38,7 +41,8 @@ pub(super) struct Turning {
     /// The distance at which they touch.
     distance: f64,
     reduction: Reduction,
-    /// The normal and the tangent of the forces.
+    /// The normal and the tangent of the forces, which are not those of one moment if velocities
+    /// are synchronized.
     axes: [Point; 2],
 }
 
@@ -60,9 +64,10 @@ impl Turning {
             [normal, Point::new(-normal.y, normal.x)]
         };
         self.apart += self.rate * dt;
-        self.axes = axes(self.apart);
+        let last = axes(self.apart);
         let half = self.apart - self.rate * (0.5 * dt);
-        let [normal, tangent] = if synchronized { axes(half) } else { self.axes };
+        let [normal, tangent] = if synchronized { axes(half) } else { last };
+        self.axes = [normal, last[1]];
         let Reduction { mu, alpha } = self.reduction;
         let w = alpha / mu * self.rate.dot(&tangent) + self.spin;
         (self.distance - self.apart.norm(), -self.rate.dot(&normal), w)
@@ -77,7 +82,8 @@ impl Turning {
     pub fn push(&mut self, v: f64, w: f64) {
         let [normal, tangent] = self.axes;
         self.rate += tangent * (self.reduction.mu * w) - normal * v;
-        self.spin += (1.0 - self.reduction.alpha) * w * self.apart.norm() / self.distance;
+        let arm = self.apart.norm() / self.distance * normal.perp(&tangent);
+        self.spin += (1.0 - self.reduction.alpha) * w * arm;
     }
 
     /// The rate of the overlap and the reduced tangential velocity of the normal with which the

@@ -5,6 +5,7 @@
 #[path = "../../../../tests/common/lammps.rs"]
 mod lammps;
 
+mod adhesion;
 mod c_program;
 mod fit;
 mod fit_strangers;

@@ -171,6 +171,9 @@ fn residuals(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
 fn boundaries(out: &mut dyn Write, course: &FittedCourse) -> io::Result<()> {
     let [low, high] = [course.angles_rad.low, course.angles_rad.high].map(f64::to_degrees);
     writeln!(out, "\nSwitches of the best fit from {low:.3}° to {high:.3}°")?;
+    if let Some(reason) = &course.untraced {
+        return writeln!(out, "not traced: {reason}");
+    }
     if course.boundaries.is_empty() {
         writeln!(out, "the same everywhere")?;
     } else {
