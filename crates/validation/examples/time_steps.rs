@@ -16,6 +16,7 @@ use stickslip::plane::progress;
 use stickslip_practice::time_steps::{self, TimeStepSettings};
 
 #[path = "../../../tests/common/lammps.rs"]
+#[expect(dead_code, reason = "contacts with adhesion are compared in the tests")]
 mod lammps;
 
 /// The steps for which LAMMPS' errors are known.

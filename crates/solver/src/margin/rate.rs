@@ -31,6 +31,23 @@ const TOLERANCES: f64 = 512.0;
 /// The rounding of a guard or of its rate, relative to it; the rounding of time is a sixteenth.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// A rate that exceeds its bounds where the step starts by this factor is no rounding, and need not
+/// be enclosed.
+const CLEAR: f64 = 1e10;
+
+/// Nor is it then if it is at least this part of the largest rate on the step: the bounds may be
+/// tiny where a state starts from rest.
+const PART: f64 = 1e-5;
+
+/// The bounds of the rate of a guard where a step starts.
+#[derive(Clone, Copy)]
+struct EnclosedStart<Mode> {
+    guard: (Mode, usize),
+    width: f64,
+    /// The largest rate on the step so far.
+    largest: f64,
+}
+
 /// The reach of the differences that replace unknown rates, and the noise of rates.
 pub(super) struct Reach<S: System> {
     /// The start of the present step, NaN before the first one.
@@ -39,6 +56,8 @@ pub(super) struct Reach<S: System> {
     distance: Cell<f64>,
     /// The largest noise of the rate that was measured.
     noise: Cell<f64>,
+    /// The guard whose rate was enclosed where the present step starts.
+    enclosed: Cell<Option<EnclosedStart<S::Mode>>>,
     room: RefCell<Room<S>>,
 }
 
@@ -68,6 +87,7 @@ impl<S: System> Reach<S> {
             start: Cell::new(f64::NAN),
             distance: Cell::new(REACH * first),
             noise: Cell::new(0.0),
+            enclosed: Cell::new(None),
             room: RefCell::new(room),
         }
     }
@@ -90,7 +110,13 @@ impl<S: System> Reach<S> {
     /// steps.
     pub fn measure(&self, system: &S, at: (S::Mode, usize), trial: &TrialOf<'_, S::State>) {
         let &TrialOf { s, y, slope, tolerances: (rtol, atol), .. } = trial;
-        if enclosed_rate(system, at, (s, y)).is_some() {
+        let bounds = enclosed_rate(system, at, (s, y));
+        self.enclosed.set(bounds.map(|bounds| EnclosedStart {
+            guard: at,
+            width: bounds.width(),
+            largest: bounds.upper().abs(),
+        }));
+        if bounds.is_some() {
             return;
         }
         let room = &mut *self.room.borrow_mut();
@@ -153,6 +179,7 @@ impl<S: System> Reach<S> {
             start: Cell::new(f64::NAN),
             distance: Cell::new(REACH * h),
             noise: Cell::new(0.0),
+            enclosed: Cell::new(None),
             room: RefCell::new(Room::new(n)),
         }
     }
@@ -170,6 +197,13 @@ impl<S: System> Reach<S> {
         place: (f64, &S::State),
     ) -> (f64, f64) {
         self.rate_and(system, at, place, |known| {
+            if let Some(start) = self.enclosed.get().filter(|start| start.guard == at) {
+                let largest = start.largest.max(known.abs());
+                self.enclosed.set(Some(EnclosedStart { largest, ..start }));
+                if known.abs() > (CLEAR * start.width).max(PART * largest) {
+                    return start.width;
+                }
+            }
             let bounds = enclosed_rate(system, at, place);
             let most = |bounds: Interval| (bounds.upper() - known).max(known - bounds.lower());
             bounds.map_or_else(|| self.noise.get(), most)
