@@ -80,8 +80,8 @@ pub extern "C" fn course(x: f64, y: f64, least: usize) -> usize {
 }
 
 /// The number of numbers of each moment of a course: time, compression, its rate, normal force,
-/// spring, tangential force, velocity, 0 for stick or the side of the slip, and Coulomb's limit over
-/// μ.
+/// spring, tangential force, velocity, 0 for stick or the side of the slip, and Coulomb's limit
+/// over μ.
 #[allow(unsafe_code, reason = "the name of an export")]
 #[unsafe(no_mangle)]
 pub extern "C" fn course_stride() -> usize {

@@ -210,7 +210,7 @@ fn one_statement_as_text() {
     assert_eq!(lines[1], "Verdict: does not hold");
     assert!(
         ran.stdout.contains(
-            "  κ = 18, ψ from 0.000000 to 0.062567               2 switches, 4 reversals\n"
+            "  κ = 18, ψ from 0 to 0.062567                      2 switches, 4 reversals\n"
         )
     );
     assert!(ran.stdout.contains("29.57 %"), "{}", ran.stdout);
