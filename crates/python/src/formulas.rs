@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{By, Compiled, Recording, Runnable, SensitivityError, System};
 use stickslip_solver::dynamic::{DynamicSegment, DynamicSwitch};
-use stickslip_solver::{EmbeddedPair, Options, Outcome};
+use stickslip_solver::{EmbeddedPair, Options, Outcome, Statistics};
 
 use stickslip_figure::pictures::studies as pictures;
 use stickslip_studies::{StudyError, own_system};
@@ -408,7 +408,12 @@ fn columns<'py>(
     columns.set_item(intern!(py, "end_state"), reals(found.run.state.clone()))?;
     columns.set_item(intern!(py, "decided"), found.run.decided)?;
     ending(&columns, system, found)?;
-    let work = found.run.statistics;
+    columns.set_item(intern!(py, "statistics"), statistics(py, &found.run.statistics)?)?;
+    Ok(columns)
+}
+
+/// The work of a run, by name.
+fn statistics<'py>(py: Python<'py>, work: &Statistics) -> PyResult<Bound<'py, PyDict>> {
     let statistics = PyDict::new(py);
     for (name, value) in [
         (intern!(py, "accepted"), work.accepted),
@@ -422,8 +427,7 @@ fn columns<'py>(
     ] {
         statistics.set_item(name, value)?;
     }
-    columns.set_item(intern!(py, "statistics"), statistics)?;
-    Ok(columns)
+    Ok(statistics)
 }
 
 /// Times, modes and states within a few steps, at no events.

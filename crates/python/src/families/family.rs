@@ -204,7 +204,6 @@ impl HybridFamily {
     }
 
     /// The boundary between two points of a window, with monitors; `None` if there is none.
-    #[expect(clippy::too_many_arguments, reason = "they are those of Python")]
     fn follow<'py>(
         &self,
         py: Python<'py>,
