@@ -130,7 +130,7 @@ class Signer:
 
     def _function(self, function: types.FunctionType) -> Any:
         uses, names = _uses(function.__code__), function.__globals__
-        others: dict[str, Any] = function.__builtins__  # type: ignore[attr-defined]
+        others: dict[str, Any] = getattr(function, "__builtins__")
         if not uses.is_open:
             raise Unsigned
         self._names |= uses.every
