@@ -251,7 +251,7 @@ ofPage("every file can be read", "", async (page) => {
       .slice(1)
       .every(
         (line) =>
-          line.split(",").length === 8 &&
+          line.split(",").length === 9 &&
           line.split(",").every((it) => Number.isFinite(Number(it))),
       ),
   );
