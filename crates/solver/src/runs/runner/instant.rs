@@ -28,6 +28,13 @@ struct Pending<Mode> {
     guard: Guard,
 }
 
+impl<Mode> Pending<Mode> {
+    /// Whether it is not evaluated again, as a bound of a domain is.
+    fn is_edge(&self) -> bool {
+        self.guard.direction() != Direction::Below
+    }
+}
+
 /// A guard has acted in a mode, and led to another one.
 #[derive(Clone, Copy)]
 struct Transition<Mode> {
@@ -497,23 +504,15 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// domain and is beyond zero. A guard that has crossed zero and that the mode does not have
     /// when its turn comes is reported, and does not act.
     fn next_to_act(&mut self, event: &Event<S>) -> Option<usize> {
-        let is_edge = |it: &Pending<_>| it.guard.direction() != Direction::Below;
         loop {
-            let mut next: Option<(i16, usize)> = None;
             // Behind the end of the run, no step follows either.
-            let waits = self.instant.pending.parts().iter().flatten().any(is_edge)
+            let waits = self.instant.pending.parts().iter().flatten().any(Pending::is_edge)
                 || self.clock.is_at(self.end);
-            for guard in 0..self.instant.pending.parts().len() {
-                let edge = self.instant.pending[guard].filter(is_edge);
-                let rank = match (edge, self.phase.guards.parts().get(guard).copied()) {
-                    (Some(pending), _) => pending.guard.rank(),
-                    (None, Some(of)) if self.is_violated(event, guard, waits) => of.rank(),
-                    _ => continue,
-                };
-                let rank = (-i16::from(rank), guard);
-                next = Some(next.map_or(rank, |next| next.min(rank)));
+            let mut guard = self.first_in_turn(event, waits)?;
+            if !waits {
+                // Others that stand on their zero would come too late behind what acts now.
+                guard = self.first_in_turn(event, true)?;
             }
-            let (_, guard) = next?;
             let Some(Pending { crossed, mode, guard: of }) = self.instant.pending[guard] else {
                 return Some(guard);
             };
@@ -529,6 +528,23 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             self.instant.pending[guard] = None;
             self.observer.on_preempted(&Preempted { s: self.clock.s, mode, guard });
         }
+    }
+
+    /// The guard whose turn it is. If another guard `waits` for its turn, those that bound the
+    /// domain count too where they stand on their zero.
+    fn first_in_turn(&mut self, event: &Event<S>, waits: bool) -> Option<usize> {
+        let mut next: Option<(i16, usize)> = None;
+        for guard in 0..self.instant.pending.parts().len() {
+            let edge = self.instant.pending[guard].filter(Pending::is_edge);
+            let rank = match (edge, self.phase.guards.parts().get(guard).copied()) {
+                (Some(pending), _) => pending.guard.rank(),
+                (None, Some(of)) if self.is_violated(event, guard, waits) => of.rank(),
+                _ => continue,
+            };
+            let rank = (-i16::from(rank), guard);
+            next = Some(next.map_or(rank, |next| next.min(rank)));
+        }
+        next.map(|(_, guard)| guard)
     }
 
     /// Whether a guard bounds the domain of the mode and is beyond zero: clearly, or where it has
