@@ -21,10 +21,12 @@ from stickslip._systems import Guard, Mode, _Clock
 _PLAIN = {bool, int, str, bytes, type(None)}
 _NUMBERS = {float, complex, np.float64, np.float32, np.int64, np.int32, np.bool_}
 #: Functions that always do the same.
-_FIXED = (np.ufunc, type(np.dot), types.BuiltinFunctionType, types.FunctionType)
-#: What reads by other names than those in the code.
+_FIXED = (np.ufunc, type(np.dot), types.FunctionType)
+#: Modules whose functions written in C do, but for those that read by other names than those in the
+#: code, or what is outside.
+_PURE = {"builtins", "math", "cmath", "_operator", "numpy"}
 _INDIRECT = {"eval", "exec", "compile", "globals", "locals", "vars", "dir", "getattr", "hasattr"}
-_INDIRECT |= {"__import__", "open"}
+_INDIRECT |= {"__import__", "open", "input", "id", "hash"}
 _OF_MODES = {"right_hand_side", "guard_list", "_sources"}
 _LOADS = {"LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS"}
 _HIDING = {"IMPORT_NAME", "LOAD_BUILD_CLASS"}
@@ -53,7 +55,7 @@ def _uses(code: types.CodeType) -> _Uses:
         rest += [inner for inner in codes[-1].co_consts if isinstance(inner, types.CodeType)]
     steps = [step for one in codes for step in dis.get_instructions(one)]
     names = {step.argval for step in steps if step.opname in _LOADS}
-    hides = any(step.opname in _HIDING for step in steps) or not names.isdisjoint(_INDIRECT)
+    hides = any(step.opname in _HIDING for step in steps)
     every = frozenset(name for one in codes for name in one.co_names)
     return _Uses(tuple(sorted(names)), every, not hides)
 
@@ -87,7 +89,7 @@ class Signer:
             return kind, repr(value)
         if kind is types.ModuleType:
             self._modules[id(value)] = value
-        elif kind is types.FunctionType and not _is_of_library(value):
+        elif kind is types.FunctionType and not _is_of_library(value.__module__):
             return self._inside(value, self._function)
         elif kind is tuple or kind is list:
             return kind, self._inside(value, self._row) if value else ()
@@ -125,6 +127,9 @@ class Signer:
 
     def _module(self, module: types.ModuleType) -> Any:
         own = vars(module)
+        # A module may make up what it does not have.
+        if "__getattr__" in own and not _is_of_library(module.__name__):
+            raise Unsigned
         found = [(name, self._sign(own[name])) for name in sorted(self._names) if name in own]
         return id(module), tuple(found)
 
@@ -146,9 +151,9 @@ class Signer:
         return id(function.__code__), self._row(read)
 
 
-def _is_of_library(function: types.FunctionType) -> bool:
-    """Whether it is a function of a library, which is used as it is."""
-    return str(function.__module__).partition(".")[0] in ("numpy", "scipy")
+def _is_of_library(module: str | None) -> bool:
+    """Whether what a module of this name has is used as it is."""
+    return str(module).partition(".")[0] in ("numpy", "scipy")
 
 
 def _is_fixed(value: Any) -> bool:
@@ -156,5 +161,7 @@ def _is_fixed(value: Any) -> bool:
     if isinstance(value, type):
         # Classes that are written in C have no attributes that can be set.
         return value.__module__ in ("builtins", "numpy") and not value.__flags__ & 1 << 9
-    owner = getattr(value, "__self__", None)
-    return isinstance(value, _FIXED) and (owner is None or isinstance(owner, types.ModuleType))
+    if isinstance(value, types.BuiltinFunctionType):
+        owned = isinstance(value.__self__, types.ModuleType | None)
+        return owned and value.__module__ in _PURE and value.__name__ not in _INDIRECT
+    return isinstance(value, _FIXED)

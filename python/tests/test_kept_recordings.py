@@ -2,6 +2,8 @@
 
 import functools
 import math
+import os
+import sys
 import types
 from collections.abc import Callable
 from typing import Any
@@ -209,3 +211,34 @@ def test_only_the_last_ones_are_kept(made: list[object]) -> None:
     for place in range(3 * _recorded.MOST_STARTS):
         stickslip.solve(of_a_global, (0, 0.1), [float(place)])
     assert len(made) == count + 3
+
+
+#: So short that no comparison of formulas and functions comes there.
+def briefly(t):
+    return 0.52 < t < 0.57
+
+
+def test_what_is_read_by_another_name_is_read_anew(monkeypatch):
+    given = {"rate": 1.0}
+    made_up, plain = types.ModuleType("made_up"), types.ModuleType("plain")
+    made_up.__getattr__ = given.__getitem__  # type: ignore[method-assign]
+    read, readers = getattr, (getattr, os.getenv)
+    functions = [
+        lambda t, y: -(made_up.rate if briefly(t) else 1.0) * y,
+        lambda t, y: -(read(plain, "rate") if briefly(t) else 1.0) * y,
+        lambda t, y: -(readers[0](plain, "rate") if briefly(t) else 1.0) * y,
+        lambda t, y: -(float(readers[1]("RATE")) if briefly(t) else 1.0) * y,
+        lambda t, y: -(sys.getrecursionlimit() / known if briefly(t) else 1.0) * y,
+    ]
+    known = sys.getrecursionlimit()
+    for function in functions:
+        ends = []
+        for rate in (1.0, 20.0):
+            given["rate"] = plain.rate = rate  # type: ignore[attr-defined]
+            monkeypatch.setenv("RATE", str(rate))
+            sys.setrecursionlimit(int(rate * known))
+            try:
+                ends.append(stickslip.solve(function, (0.0, 1.0), [1.0]).y[0, -1])
+            finally:
+                sys.setrecursionlimit(known)
+        assert ends == pytest.approx([math.exp(-1.0), math.exp(-1.95)], abs=1e-9)
