@@ -24,12 +24,12 @@ mod page;
 mod request;
 mod scene;
 mod spheres;
-mod state;
+pub mod state;
 mod system;
 
 use std::cell::RefCell;
 
-use state::State;
+use crate::state::State;
 
 thread_local! {
     static STATE: RefCell<State> = RefCell::default();
@@ -114,6 +114,3 @@ arrays! {
     counts: counts_ptr, counts_len;
     codes: codes_ptr, codes_len;
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,4 +1,5 @@
-//! What the C interface keeps between calls: the scene, and the arrays that the page reads.
+//! What the C interface keeps between calls: the scene, and the arrays that the page reads. Programs
+//! in Rust need no interface: they use this.
 
 use std::ops::Range;
 
@@ -33,7 +34,6 @@ impl State {
     }
 
     /// Takes a request, as the page does it through [`Self::room`].
-    #[cfg(test)]
     pub fn fill(&mut self, request: &[u8]) {
         self.input = request.to_vec();
     }

@@ -63,8 +63,9 @@ pub enum RunError {
     /// A guard is zero throughout a step, so that its crossings have no meaning. A mode that does
     /// not use a guard returns [`Guard::OFF`](crate::Guard::OFF) for it.
     #[error(
-        "guard {guard} is identically zero on a step from s = {s}; a mode that does not use it \
-         should turn it off"
+        "guard {guard} is zero on a whole step from s = {s}, or its rounding hides that it is not; \
+         expected that a mode turns off a guard that it does not use, and a form without \
+         cancellation, such as expm1(x) instead of exp(x) - 1"
     )]
     GuardIdenticallyZero {
         /// The guard's index.

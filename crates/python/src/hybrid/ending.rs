@@ -131,7 +131,8 @@ fn reason(system: &System, error: &RunError) -> String {
             format!("Near t = {s:?}, {} is not a number.", system.guard_label(mode, guard))
         }
         RunError::GuardIdenticallyZero { guard, s } => format!(
-            "From t = {s:?}, {} is zero throughout a step, so that no crossing has a meaning.",
+            "From t = {s:?}, {} is zero throughout a step, or its rounding hides that it is not, so \
+             that no crossing has a meaning.",
             system.guard_label(mode, guard)
         ),
         RunError::GuardUnresolved { guard, s, h } => format!(

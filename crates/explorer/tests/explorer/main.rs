@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::spheres::MOMENT;
-use crate::state::State;
+use stickslip_explorer::course_stride;
+use stickslip_explorer::state::State;
 
 fn ask(state: &mut State, request: &Value) -> Value {
     let request = request.to_string();
@@ -48,7 +48,7 @@ fn bodies_that_adhere_may_stay_together() {
     assert_eq!(ask(&mut state, &adhere)["fields"][0], "eps_t");
     // Coulomb's limit is the elastic force and twice the pull-off.
     assert!(state.course([10.0, 1.0], 50) > 50);
-    for moment in state.numbers.chunks(MOMENT) {
+    for moment in state.numbers.chunks(course_stride()) {
         assert!((moment[8] - moment[3] - 1.0).abs() < 1e-9, "{moment:?}");
     }
     adhere["scene"]["damping"] = json!(2.0);
@@ -92,7 +92,7 @@ fn the_points_of_the_paper_are_sixteen_intervals() {
 
 #[test]
 fn a_system_runs_and_has_an_atlas() {
-    let text = include_str!("../../../examples/systems/ball.slip");
+    let text = include_str!("../../../../examples/systems/ball.slip");
     let mut state = State::default();
     let parsed = ask(&mut state, &json!({ "do": "parse", "text": text }));
     assert_eq!(parsed["parameters"][0]["range"], json!([1.0, 20.0]));
