@@ -327,7 +327,7 @@ impl Graph {
 
     /// The formula made anew, with other formulas in place of some nodes: `instead` gets a node,
     /// and what has been made of its operands.
-    fn rewritten(
+    pub(crate) fn rewritten(
         &mut self,
         formula: Formula,
         instead: &mut impl FnMut(&mut Self, FormulaNode, &[Formula]) -> Option<Formula>,

@@ -9,7 +9,7 @@
 use stickslip_solver::{EmbeddedPair, InvalidValue, Options, Outcome, RunError};
 use thiserror::Error;
 
-use crate::graph::{Binary, Formula, Graph, Unary, Variable};
+use crate::graph::{Binary, Formula, FormulaNode, Graph, Unary, Variable};
 use crate::program::{Inputs, Program};
 use crate::recording::{Hidden, Recording};
 use crate::system::{Component, Next, Rule, System, Trigger};
@@ -184,10 +184,20 @@ impl<'a> Extended<'a> {
             rule.rest = None;
         }
         let mut extended = Self { system: ending, by, n, moves: Vec::new(), end_moves: Vec::new() };
+        let begin = system.start.unwrap_or_else(|| extended.number(0.0));
+        let slopes = extended.first_slopes(system, begin);
         for &by in by {
+            let later = extended.fixed_slope(begin, by);
+            let moves = extended.system.graph.value(later) != Some(0.0);
             for (place, component) in system.components.iter().enumerate() {
                 let start = match by {
-                    By::Parameter(_) => extended.fixed_slope(component.start, by),
+                    By::Parameter(_) if !moves => extended.fixed_slope(component.start, by),
+                    By::Parameter(_) => {
+                        // At a fixed time, a state that begins later has not come as far.
+                        let own = extended.fixed_slope(component.start, by);
+                        let missed = extended.graph().binary(Binary::Mul, slopes[place], later);
+                        extended.graph().binary(Binary::Sub, own, missed)
+                    }
                     By::Start(own) => extended.number(f64::from(u8::from(own == place))),
                 };
                 let name = match by {
@@ -221,6 +231,29 @@ impl<'a> Extended<'a> {
             extended.moves.push(moves);
         }
         extended
+    }
+
+    /// The slopes of the state where a run begins, as formulas of parameters.
+    fn first_slopes(&mut self, system: &System, begin: Formula) -> Vec<Formula> {
+        let mut slopes = vec![self.number(0.0); self.n];
+        for (place, first) in slopes.iter_mut().enumerate() {
+            let mut at_start = |mode: usize| {
+                let slope = system.modes[mode].slopes[place];
+                self.system.graph.rewritten(slope, &mut |_, node, _| match node {
+                    FormulaNode::Variable(Variable::Component(own)) => {
+                        Some(system.components[own as usize].start)
+                    }
+                    FormulaNode::Variable(Variable::Time) => Some(begin),
+                    _ => None,
+                })
+            };
+            *first = at_start(system.first);
+            for &(condition, mode) in system.otherwise.iter().rev() {
+                let other = at_start(mode);
+                *first = self.system.graph.select(condition, *first, other);
+            }
+        }
+        slopes
     }
 
     fn graph(&mut self) -> &mut Graph {

@@ -27,7 +27,7 @@ pub(crate) mod several;
 use stickslip_solver::Direction;
 use thiserror::Error;
 
-use crate::graph::{Binary, Formula, Unary};
+use crate::graph::{Binary, Formula, Unary, Variable};
 use crate::system::{Mode, Next, Rule, System, Trigger};
 
 /// The places of the modes that take the place of one that slides, from the first.
@@ -256,7 +256,7 @@ impl System {
             }
             if part == SLIDING {
                 for (guard, part) in [(minus_a1, ABOVE_RELEASED), (a2, BELOW_RELEASED)] {
-                    let changes = onto_surface.clone();
+                    let (changes, guard) = (onto_surface.clone(), self.as_condition(guard));
                     rules.push(Rule { changes, ..rule(guard, "leaves", Next::Mode(to(part)), 0) });
                 }
             } else if is_above {
@@ -296,6 +296,17 @@ impl System {
             }
         }
         changes
+    }
+
+    /// A formula that can be a condition: one that never changes cannot, and reads the time.
+    fn as_condition(&mut self, formula: Formula) -> Formula {
+        let read = self.graph.reads(&[formula]);
+        if read.iter().any(|it| !matches!(it, Variable::Parameter(_))) {
+            return formula;
+        }
+        let (time, zero) = (self.graph.time(), self.graph.constant(0.0));
+        let nothing = self.graph.binary(Binary::Mul, zero, time);
+        self.graph.binary(Binary::Add, formula, nothing)
     }
 
     /// The equations of a mode on one side, and the rate of the surface's function there.

@@ -244,6 +244,17 @@ fn estimates_follow_the_results() {
 }
 
 #[test]
+fn terms_of_the_law_are_no_columns() {
+    for term in ["dynamic_friction", "friction_decay", "pull_off"] {
+        let workspace = Workspace::with_input(&format!("kappa,psi,{term}\n18,1,0.5\n"));
+        let ran = workspace.run("collide --batch in.csv --out o");
+        assert_eq!(ran.code, 2);
+        let option = format!("expected --{}", term.replace('_', "-"));
+        assert!(ran.stderr.contains(&option), "{}", ran.stderr);
+    }
+}
+
+#[test]
 fn results_go_to_standard_output_unless_a_file_is_named() {
     let workspace = Workspace::with_input("kappa,psi\n18,1\n");
     assert_eq!(workspace.run("collide --batch in.csv --out out.csv").code, 0);

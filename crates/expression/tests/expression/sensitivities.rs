@@ -130,6 +130,15 @@ fn others_have_those_of_differences() {
     let steep = "parameter w = 3, a = 0.4\nstate x = 0, v = 0.3\nx' = v\nv' = -x - abs(x)*a\n\
                  when x > a*sin(w*t) + 0.5\n  v := -0.9*v + a*w*cos(w*t)\nend = 6";
     compare("steep", steep, &[By::Parameter(0), By::Parameter(1)], None);
+    // A start that moves, in a mode that parameters choose.
+    for late in ["0.4", "0.7"] {
+        let start = "parameter p = LATE, q = 1.5\nstate x = q*p, v = 0.3\nx' = v + t*x\n\
+                     mode up\n  v' = -q*x + t\n  when x > 2 -> down\n\
+                     mode down\n  v' = -2*x*p - 3*t\n  when x < 0.5 -> up\n\
+                     start at p + q*p*p in up if p < 0.5 else down\nend = 4";
+        let start = start.replace("LATE", late);
+        compare("start", &start, &[By::Parameter(0), By::Parameter(1), By::Start(0)], None);
+    }
 }
 
 #[test]

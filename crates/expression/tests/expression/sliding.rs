@@ -247,3 +247,13 @@ fn what_is_called_rest_stays_a_name() {
     let system = System::parse(text).expect("a system");
     assert_eq!(run(&system, &[]).events.len(), 2);
 }
+
+/// Beside a surface that moves, and slopes that are constant there, the conditions under which it
+/// is left never change. The text of the system reads as the same system all the same.
+#[test]
+fn constant_slopes_beside_a_surface_have_a_text() {
+    let text = "state x = 2\nmode m\n  sliding on x = t\n  x' = -3*sign(x - t)\nend = 3\n";
+    let system = System::parse(text).expect("a system");
+    let again = System::parse(&system.text()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(again.text(), system.text());
+}

@@ -1,7 +1,7 @@
 //! Poincaré maps as data, and bifurcation diagrams by brute force.
 
 use stickslip_expression::{InvalidValue, Runnable};
-use stickslip_solver::dynamic::{DynamicRun, run_dynamic_with};
+use stickslip_solver::dynamic::{DynamicRun, DynamicSwitch, run_dynamic_with};
 use stickslip_solver::{EmbeddedPair, Outcome, RunError};
 
 use super::{Switches, coarse, require_end, require_skip};
@@ -152,10 +152,13 @@ impl Orbits {
         let from = start.s + section.skip;
         let (pair, end) = (EmbeddedPair::Dop853, from + section.time);
         let run = run_dynamic_with(pair, runnable, start, end, &coarse(), &mut found);
-        let own = found
-            .events
-            .into_iter()
-            .filter(|event| event.s >= from && places.contains(&(event.from % modes, event.guard)));
+        let is_own = |event: &DynamicSwitch<usize>| {
+            let own = |guard: &usize| places.contains(&(event.from % modes, *guard));
+            // An event that changes nothing is also that of the rules which vanish with it.
+            let alone = event.from != event.to || event.before != event.after;
+            own(&event.guard) || !alone && event.simultaneous.iter().any(own)
+        };
+        let own = found.events.into_iter().filter(|event| event.s >= from && is_own(event));
         points.extend(own.map(|event| SectionPoint { s: event.s, state: event.before }));
         run.map(|run| DynamicRun { mode: run.mode % modes, ..run })
     }

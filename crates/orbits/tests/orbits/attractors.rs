@@ -32,6 +32,20 @@ fn a_tent_map_has_its_exponent() {
     }
 }
 
+/// Two rules that change nothing vanish together: each has its points, whichever is listed first.
+#[test]
+fn rules_that_vanish_together_have_their_points() {
+    let (turn, top) = ("when v crosses 0 \"turn\"\n", "when v falls through 0 \"top\"\n");
+    for rules in [[turn, top], [top, turn]] {
+        let text = format!("state x = 0, v = 1\nx' = v\nv' = -x\n{}end = 9", rules.concat());
+        for (rule, count) in [("turn", 6), ("top", 3)] {
+            let section = Section { rule, skip: 0.0, time: 20.0 };
+            let points = orbits(&text).section(&[], &Guess::default(), &section).expect("points");
+            assert_eq!(points.len(), count, "{rule} of {rules:?}");
+        }
+    }
+}
+
 /// Along an orbit, exponents are the logarithms of its multipliers over the period.
 #[test]
 fn exponents_of_an_orbit_are_its_multipliers() {

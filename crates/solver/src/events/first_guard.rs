@@ -429,7 +429,9 @@ impl<S: System> Examination<'_, S> {
             let until = |node: usize| NODES[node] <= event.elapsed / h;
             let column = column::<S>(values, other);
             let sizes = (0..NODES.len()).filter(|&node| until(node)).map(|node| column[node].abs());
+            // One that rests on zero all the time crosses nothing.
             let zero = event.elapsed > 0.0
+                && column.iter().any(|value| *value != 0.0)
                 && self.phase.guards[other].direction().has_values()
                 && there[other].abs() <= TOGETHER * sizes.fold(0.0, f64::max);
             event.simultaneous[other] =

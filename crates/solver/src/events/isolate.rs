@@ -35,7 +35,7 @@ use crate::events::isolate::curve::{Accuracy, NARROWEST, Quotient, power};
 use crate::events::isolate::panel::{Panel, Points};
 
 pub(crate) use curve::{Curve, noise};
-pub(crate) use enclosed::{Enclosed, first_enclosed_crossing, last_enclosed_sign};
+pub(crate) use enclosed::{Enclosed, first_enclosed_crossing, last_enclosed_sign, rests};
 pub(crate) use notice::{Notice, Touch};
 pub(crate) use root::narrow;
 use root::root;
@@ -69,6 +69,8 @@ pub(crate) struct Bracket {
     pub(crate) low: f64,
     pub(crate) high: f64,
     pub(crate) guess: f64,
+    /// Whether it is zero from `low` on up to the crossing.
+    pub(crate) rests: bool,
 }
 
 /// Where isolation begins.
@@ -184,6 +186,7 @@ pub(crate) fn first_crossing(
                         low,
                         high: theta,
                         guess,
+                        rests: false,
                     }));
                 }
                 // The first certain sign is the sign with which the curve leaves its zero.
@@ -228,7 +231,7 @@ fn hump(quotient: &mut Quotient<'_>, end: (f64, f64), hidden: f64) -> Option<Bra
     }
     let (low, high) = (above?, below);
     let guess = root(|theta| quotient.at(theta), low, high);
-    Some(Bracket { low: low.0, high: high.0, guess })
+    Some(Bracket { low: low.0, high: high.0, guess, rests: false })
 }
 
 /// Whether a curve is exactly zero from the start of the step on, for longer than rounding of the
@@ -309,7 +312,12 @@ impl Verdict {
 impl Bracket {
     /// A crossing exactly at `theta`.
     pub(crate) const fn at(theta: f64) -> Self {
-        Self { low: theta, high: theta, guess: theta }
+        Self { low: theta, high: theta, guess: theta, rests: false }
+    }
+
+    /// A crossing of a curve that rests on zero at `low`, and has crossed it at `high`.
+    fn behind_rest(low: f64, high: f64) -> Self {
+        Self { low, high, guess: 0.5 * (low + high), rests: true }
     }
 }
 

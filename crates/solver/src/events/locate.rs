@@ -56,7 +56,7 @@ impl<S: System> Examination<'_, S> {
         exact: bool,
     ) -> Result<Option<Event<S>>, RunError> {
         let (system, mode) = (self.system, self.phase.mode);
-        let Bracket { mut low, mut high, guess: mut theta } = crossing.bracket;
+        let Bracket { mut low, mut high, guess: mut theta, rests } = crossing.bracket;
         let (mut seen_low, mut seen_high) = (false, false);
         let beyond = crossing.bracket.high * step.h;
         let (count, sign) = (self.phase.count(), crossing.sign);
@@ -76,6 +76,7 @@ impl<S: System> Examination<'_, S> {
             return at_start(0.0, f64::INFINITY);
         }
         if low == 0.0
+            && !rests
             && let Some(slope) = self.falls_from_start(step, guard, crossing.sign)
         {
             return at_start(start, slope);
@@ -117,13 +118,11 @@ impl<S: System> Examination<'_, S> {
             }
             let shift = end.shift() / step.h;
             let next = theta + shift;
-            let by_newton = if shift.abs() <= BRIDGE * theta && next >= low && next <= high {
-                self.bridge(&near, &trial, &end)
-            } else {
-                None
-            };
+            let close = shift.abs() <= BRIDGE * theta && next >= low && next <= high;
+            // Where it rests, every place is a zero.
+            let by_newton = if close && !rests { self.bridge(&near, &trial, &end) } else { None };
             let landing = match by_newton {
-                None if high - low > 4.0 * f64::EPSILON * high => {
+                None if !rests && high - low > 4.0 * f64::EPSILON * high => {
                     self.search_nearby(&near, step, &trial, &end, (low, high))
                 }
                 landing => landing,
@@ -156,7 +155,7 @@ impl<S: System> Examination<'_, S> {
                 continue;
             }
             // Newton's method if it makes progress, and bisection if the guard is too flat for it.
-            let progress = end.value.abs() <= 0.1 * last_value;
+            let progress = !rests && end.value.abs() <= 0.1 * last_value;
             last_value = end.value.abs();
             theta = if progress && next > low && next < high { next } else { 0.5 * (low + high) };
         }

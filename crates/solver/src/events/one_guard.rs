@@ -13,16 +13,17 @@ use crate::events::by_bounds::Sight;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing,
-    last_enclosed_sign, last_sign, noise,
+    last_enclosed_sign, last_sign, noise, rests,
 };
 use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
 use crate::events::sidestep::resolution;
 use crate::events::status::{Crossing, Status};
 use crate::hybrid::Direction;
-use crate::lists::List;
-use crate::method::{Method, StepOf, TrialOf};
+use crate::lists::{List, Shape};
+use crate::method::{Method, StepOf, Store, TrialOf};
 use crate::system::{PerGuard, System};
+use stickslip_number::{Enclosure, Interval};
 
 /// A guard that is zero throughout a step is examined on longer steps, each four times as long as
 /// the one before, at most this often. The shortest step that moves the time grows to ordinary
@@ -112,6 +113,39 @@ impl<S: System> Examination<'_, S> {
         false
     }
 
+    /// Whether a guard of a readable system rests on zero from a step fraction on, and is not zero
+    /// whatever the state is.
+    fn rests<M: Method>(&mut self, guard: usize, step: &mut StepOf<S::State>, first: f64) -> bool {
+        let (system, mode) = (self.system, self.phase.mode);
+        let read = system.reads(mode);
+        let any = List::made(S::Components::count(&read, step.y0.size()), |_| Enclosure::ENTIRE);
+        self.statistics.enclosures += 1;
+        if system.enclose(mode, Enclosure::ENTIRE, &any)[guard].value == Interval::ZERO {
+            return false;
+        }
+        let mut dense = self.room.dense();
+        dense_output::<_, M>(system, mode, step, &mut dense);
+        self.statistics.field += M::DENSE_STAGES - 1;
+        let (sign, path) = (1.0, Path::dense(&dense, read));
+        let (statistics, room) = (&mut *self.statistics, &mut *self.room);
+        let (dense_output, method) = (&dense, PhantomData::<M>);
+        let along = AlongStep {
+            system,
+            mode,
+            guard,
+            sign,
+            step,
+            dense: dense_output,
+            statistics,
+            room,
+            method,
+        };
+        let mut enclosed = EnclosedAlongStep { along, path, local: None };
+        let rests = rests(&mut enclosed, first, resolution(step.s, step.h));
+        self.room.give_dense(dense);
+        rests
+    }
+
     /// Decides about a guard by isolation, from `beginning` on. The result is `None` if the step is
     /// too coarse for that.
     pub(crate) fn isolate<M: Method>(
@@ -144,7 +178,7 @@ impl<S: System> Examination<'_, S> {
         let side = first_side(self.system, at, step, self.statistics, self.room);
         let direction = self.phase.guards[guard].direction();
         if side != 0.0 && direction.fires_from(-side) && rate != side {
-            let bracket = Bracket { low: 0.0, high: 1.0, guess: 0.0 };
+            let bracket = Bracket { low: 0.0, high: 1.0, guess: 0.0, rests: false };
             return Ok(Some(Status::Fires(Crossing { sign: -side, bracket })));
         }
         if rate == 0.0 {
@@ -164,7 +198,11 @@ impl<S: System> Examination<'_, S> {
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
         // A tiny value at the start may stand for the side from which the guard came.
-        if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
+        let is_zero =
+            values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0);
+        // Zeros of higher order have no bounds.
+        let bounded = S::READABLE && self.has_bounds(guard) && beginning.zero_order <= 2;
+        if is_zero && !(bounded && self.rests::<M>(guard, step, beginning.theta)) {
             if step.h < self.trial.h {
                 // A longer step will decide.
                 return Ok(Some(Status::Clear));
@@ -188,8 +226,6 @@ impl<S: System> Examination<'_, S> {
         let direction = self.phase.guards[guard].direction();
         let resolution = resolution(step.s, step.h);
         let mut found = Status::Clear;
-        // Zeros of higher order have no bounds.
-        let bounded = S::READABLE && self.has_bounds(guard) && beginning.zero_order <= 2;
         // One search by bounds finds both directions. A second one would resolve all poles of the
         // step again after each event.
         let both = bounded && direction == Direction::Either;

@@ -30,7 +30,10 @@ impl Crossing {
 
     /// A crossing near `theta` of a guard that is monotone on the whole step.
     pub(crate) fn alone(sign: f64, theta: f64) -> Status {
-        Status::Fires(Self { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
+        Status::Fires(Self {
+            sign,
+            bracket: Bracket { low: 0.0, high: 1.0, guess: theta, rests: false },
+        })
     }
 }
 

@@ -20,6 +20,12 @@ enum Shape {
     Power(f64),
     /// |y| (0.6 − y).
     Kink,
+    /// Zero up to a place, and then falling.
+    Behind(f64),
+    /// Zero up to 1, and then −1, −2 …
+    Steps,
+    /// Zero but around a place, where it falls to −1/200 and rises again.
+    Notch(f64),
 }
 
 impl Shape {
@@ -30,6 +36,9 @@ impl Shape {
             Self::Excess => (x.abs() - 0.2).max(T::from(0.0)),
             Self::Power(power) => y.powf(power) * (-y + 0.6),
             Self::Kink => y.abs() * (-y + 0.6),
+            Self::Behind(place) => -(y - place).max(T::from(0.0)),
+            Self::Steps => -y.floor(),
+            Self::Notch(place) => -(-(y - place).abs() + 0.005).max(T::from(0.0)),
         }
     }
 }
@@ -101,6 +110,33 @@ fn a_guard_leaves_a_plateau_on_the_side_where_it_does() {
             let never = black_box(direction, |y| Shape::Excess.of(y));
             let found = places(pair, &never, (0.0, 3.0), &options).unwrap();
             assert!(found.is_empty(), "black box, {direction:?} {found:?} {options:?}");
+        }
+    });
+}
+
+#[test]
+fn a_guard_that_starts_on_a_plateau_fires_where_it_leaves_it() {
+    let mut random = fastrand::Rng::with_seed(5);
+    each_step(|pair, options| {
+        let place = 0.1 + 0.8 * random.f64();
+        let shapes = [
+            (Shape::Behind(place), place),
+            (Shape::Steps, 1.0),
+            (Shape::Notch(place), place - 0.005),
+        ];
+        for (shape, leaves) in shapes {
+            for direction in [Direction::Below, Direction::Falling, Direction::Either] {
+                for order in 0..=1 {
+                    let guard = Guard::new(direction).from_zero(order).terminal();
+                    let found = places(pair, &Readable(shape, guard), (0.05, 2.0), &options);
+                    let found = found.unwrap_or_else(|error| panic!("{shape:?} {error}"));
+                    close(&found, &[leaves - 0.05], 1e-14);
+                }
+            }
+            // It comes back to zero at most.
+            let rising = Readable(shape, Guard::new(Direction::Rising).terminal());
+            let found = places(pair, &rising, (0.05, 2.0), &options).unwrap();
+            assert!(found.is_empty(), "{shape:?} {found:?} {options:?}");
         }
     });
 }

@@ -39,6 +39,9 @@ impl Columns {
         Parameter::TangentialDamping,
     ];
 
+    /// What only options give, and a column would not change.
+    const TERMS: [&str; 3] = ["dynamic_friction", "friction_decay", "pull_off"];
+
     /// The columns of a file of points (κ, ψ) that are located in an atlas.
     pub const POINTS: Self =
         Self { parameters: &[Parameter::Kappa, Parameter::Psi], options: false, results: &LOCATED };
@@ -49,6 +52,14 @@ impl Columns {
     /// What is wrong with the columns, and what is expected.
     pub fn recipe(&self, header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
         let names = names(header, self.results, "kappa,psi")?;
+        let term = Self::TERMS.iter().find(|term| names.contains(&term.as_bytes()));
+        if let Some(term) = term.filter(|_| self.options) {
+            return Err(format!(
+                "column {term} is part of the law, which all rows share; expected --{}, or another \
+                 name",
+                term.replace('_', "-")
+            ));
+        }
         let column = |parameter: Parameter| {
             let place = names.iter().position(|name| *name == parameter.name().as_bytes());
             place.filter(|_| self.parameters.contains(&parameter))

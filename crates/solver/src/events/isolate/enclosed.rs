@@ -5,6 +5,9 @@
 //! at the ends and at the extremum decide. All other parts are halved. What remains at rounding is
 //! a jump, a pole, or a touch that may be a pair of crossings. Without bounds it is a pole if its
 //! values, by steps of the method, grow towards it, and otherwise a jump.
+//!
+//! A guard such as max(0, x − 1) rests on zero for a while: there its bounds are zero. It crosses
+//! where it leaves that part, if it was on the other side before or starts there.
 
 use crate::error::RunError;
 use crate::events::isolate::{
@@ -52,11 +55,15 @@ pub(crate) fn first_enclosed_crossing(
 ) -> Result<Verdict, RunError> {
     let Beginning { theta: first, value, zero_order } = task.beginning;
     let before = (first, value);
-    let mut search = Search { curve, notice, task, before, hidden: None, through: false, count: 0 };
+    let mut search = Search::new(curve, notice, task, before);
     if zero_order == 0 && value != 0.0 {
         if task.domain && value < 0.0 {
             return Ok(Verdict::StartsBelow);
         }
+        return search.walk(first);
+    }
+    if rests(search.curve, first, task.resolution) {
+        (search.before, search.rest) = ((first, 0.0), first);
         return search.walk(first);
     }
     let Some((theta, sign)) = search.leave_zero(first, zero_order) else {
@@ -73,6 +80,12 @@ pub(crate) fn first_enclosed_crossing(
     search.walk(theta)
 }
 
+/// Whether an enclosed curve rests on zero from a step fraction on: its bounds there are zero.
+pub(crate) fn rests(curve: &mut dyn Enclosed, first: f64, resolution: f64) -> bool {
+    let high = (first + 4.0 * resolution).min(1.0);
+    high > first && curve.over(first, high).value == Interval::ZERO
+}
+
 /// The last sign that an enclosed curve shows on a step at whose end it is zero, if it starts with
 /// `value`. The result is 0 if bounds do not decide.
 pub(crate) fn last_enclosed_sign(
@@ -84,8 +97,7 @@ pub(crate) fn last_enclosed_sign(
     let (domain, both) = (false, false);
     let task = Task { beginning, domain, both, end: 0.0, resolution, widest: 1.0 };
     let (notice, before) = (&mut |_| {}, (0.0, value));
-    let mut search =
-        Search { curve, notice, task: &task, before, hidden: None, through: true, count: 0 };
+    let mut search = Search { through: true, ..Search::new(curve, notice, &task, before) };
     let known = search.walk(0.0)? == Verdict::None && search.before.1 != 0.0;
     Ok(if known { search.before.1.signum() } else { 0.0 })
 }
@@ -106,7 +118,9 @@ struct Search<'a> {
     task: &'a Task,
     /// The last place where the sign was seen, and that sign.
     before: (f64, f64),
-    /// What may be hidden since that place, where rounding hid the sign.
+    /// The end of the last part on which bounds were zero.
+    rest: f64,
+    /// What may be hidden since the last sign, where rounding hid the sign.
     hidden: Option<Notice>,
     /// Whether it goes on over crossings.
     through: bool,
@@ -114,7 +128,17 @@ struct Search<'a> {
     count: usize,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(
+        curve: &'a mut dyn Enclosed,
+        notice: &'a mut dyn FnMut(Notice),
+        task: &'a Task,
+        before: (f64, f64),
+    ) -> Self {
+        let rest = f64::NEG_INFINITY;
+        Self { curve, notice, task, before, rest, hidden: None, through: false, count: 0 }
+    }
+
     /// A part of the step on which a guard that starts from zero has one sign, by its end, and that
     /// sign. The result is `None` if no sign shows.
     fn leave_zero(&mut self, first: f64, zero_order: u32) -> Option<(f64, f64)> {
@@ -202,18 +226,22 @@ impl Search<'_> {
                     return None;
                 }
             }
-            Some(touch @ Notice::Touch(_)) if !turns => (self.notice)(touch),
+            Some(touch @ Notice::Touch(_)) if !turns && before.1 != 0.0 => (self.notice)(touch),
             _ => {}
         }
         let falls = before.1 >= 0.0 && value < 0.0;
         let rises = self.task.both && before.1 <= 0.0 && value > 0.0;
         if (falls || rises) && !self.through {
+            if self.rest >= before.0 {
+                let bracket = Bracket::behind_rest(self.rest, theta);
+                return Some(Verdict::crossing(value, bracket));
+            }
             let (curve, side) = (&mut *self.curve, -value.signum());
             let mut at = |theta: f64| side * curve.at(theta);
             let low = (before.0, at(before.0).max(0.0));
             let high = (theta, at(theta).min(-f64::MIN_POSITIVE));
             let guess = root(at, low, high);
-            let bracket = Bracket { low: before.0, high: theta, guess };
+            let bracket = Bracket { low: before.0, high: theta, guess, rests: false };
             return Some(Verdict::crossing(value, bracket));
         }
         None
@@ -236,6 +264,10 @@ impl Search<'_> {
             }
             self.count += 1;
             let (bounds, centre) = self.curve.bounds(low, high);
+            if bounds.value == Interval::ZERO {
+                self.rest = high;
+                continue;
+            }
             let sign = bounds.value.sign();
             let (slope, bend) = (bounds.slope, bounds.bend);
             if sign != 0.0 {

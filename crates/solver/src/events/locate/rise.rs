@@ -37,6 +37,9 @@ impl<S: System> Examination<'_, S> {
         crossing: &Crossing,
     ) -> Option<f64> {
         let theta = crossing.bracket.guess;
+        if crossing.bracket.rests {
+            return Some(0.0);
+        }
         let soon = theta < NODES[1] || theta * step.h <= SOON * step.s.abs().max(self.usual);
         let from_zero = self.phase.zero_orders[guard] > 0 && self.notes_of(guard).next().is_none();
         if theta == 0.0 || from_zero && soon {

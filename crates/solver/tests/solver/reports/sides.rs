@@ -310,12 +310,16 @@ impl Report for Plateau {
     }
 }
 
-/// SUNDIALS 881, OpenModelica 13680: a guard that is zero on a stretch is refused, with its name.
+/// SUNDIALS 881, OpenModelica 13680: a guard that is zero on a stretch never fires where bounds show
+/// that it rests there, and is refused, with its name, where its values are all that is known.
 #[test]
-fn a_guard_that_is_zero_throughout_is_refused() {
+fn a_guard_that_is_zero_throughout_never_fires_or_is_refused() {
     for (name, run) in runs(&Plateau(-1.0), (0, 0.0, [0.0]), 2.0, &Options::default()) {
-        let refused = matches!(run, Err(RunError::GuardIdenticallyZero { guard: 0, .. }));
-        assert!(refused, "{name}: {run:?}");
+        let right = match &run {
+            Ok(ended) => name.contains("readable") && ended.events.0.is_empty(),
+            Err(error) => matches!(error, RunError::GuardIdenticallyZero { guard: 0, .. }),
+        };
+        assert!(right, "{name}: {run:?}");
     }
 }
 

@@ -181,13 +181,15 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let (mut slope, mut ahead) = (self.room.state(), self.room.state());
         self.system.field(mode, s, &self.state, &mut slope);
         self.statistics.field += 1;
-        let mut reach = (CLOSE * self.h).max(256.0 * f64::EPSILON * s.abs());
+        let shortest = (CLOSE * self.h).max(256.0 * f64::EPSILON * s.abs());
+        let mut reach = shortest;
         let change = loop {
             S::State::shifted(&mut ahead, &self.state, &slope, reach);
             let change = self.room.value(self.system, (mode, guard), s + reach, &ahead) - value;
             self.statistics.guards += 1;
             if change.abs() > 8.0 * hidden || reach >= FAR * self.h {
-                break change;
+                // What nothing hides shows at once: it rests on zero, and falls later.
+                break if hidden == 0.0 && reach > shortest { 0.0 } else { change };
             }
             reach *= 16.0;
         };
