@@ -237,7 +237,7 @@ class _Table:
         self.places: list[list[str]] = []
 
     @property
-    def formed_of(self) -> list[Any]:
+    def formed_of(self) -> tuple[Any, ...]:
         """All of which formulas are made. Those of modes are told apart by their places, too."""
         found = [self.plain, *self.args, len(self.args)]
         sources = list(self.events)
@@ -251,7 +251,7 @@ class _Table:
             found += [id(source.function) for source in sources]
             of_modes = sources[len(self.events) :]
             found += [id(guard) for source in of_modes for guard in source.guards]
-        return found
+        return tuple(found)
 
     @property
     def has_compiled(self) -> bool:

@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import dis
 import functools
+import operator
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,6 +35,12 @@ _LOADS = {"LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS"}
 _HIDING = {"IMPORT_NAME", "LOAD_BUILD_CLASS"}
 #: Entries of arrays and rows that are compared.
 _MOST_ENTRIES = 256
+#: What can be set of a function; its closure, its globals and its builtins cannot.
+_OF_FUNCTIONS = operator.attrgetter(
+    "__code__", "__defaults__", "__kwdefaults__", "__dict__", "__name__"
+)
+_CONTENTS = partial(map, operator.attrgetter("cell_contents"))
+_SIZES, _TYPES = partial(map, len), partial(map, type)
 
 
 class Unsigned(Exception):
@@ -60,6 +69,28 @@ def _uses(code: types.CodeType) -> _Uses:
     return _Uses(tuple(sorted(names)), every, not hides)
 
 
+class Watch(NamedTuple):
+    """What was read for a signature, to see without signing again that it is there still.
+
+    The same objects are: those that can change were looked into. Equal ones may not be.
+    """
+
+    how: tuple[Callable[[Any], Iterable[Any]], ...]
+    what: tuple[Any, ...]
+    found: list[Any]
+    arrays: list[tuple[Any, Any]]
+
+    def holds(self) -> bool:
+        """Whether the signature is the same. It may be if this is false."""
+        now = chain.from_iterable(map(operator.call, self.how, self.what))
+        try:
+            same = all(map(operator.is_, now, self.found))
+        except (KeyError, ValueError):
+            # A name has no value any more.
+            return False
+        return same and all(_entries(array) == then for array, then in self.arrays)
+
+
 class Signer:
     """Signs values, and keeps alive those that are told apart by their places."""
 
@@ -69,6 +100,10 @@ class Signer:
         self._modules: dict[int, types.ModuleType] = {}
         self._under_way: set[int] = set()
         self._has_modes = False
+        self._functions: set[int] = set()
+        #: How something was read, of what, and what was found.
+        self._reads: list[tuple[Callable[[Any], Iterable[Any]], Any, list[Any]]] = []
+        self._arrays: list[tuple[Any, Any]] = []
 
     def signature(self, values: Any) -> Any:
         """The signature of values. Raises Unsigned if they have none."""
@@ -81,6 +116,13 @@ class Signer:
                     raise Unsigned
                 return own, tuple(modules)
 
+    def watch(self, functions: Iterable[Any]) -> Watch | None:
+        """What was read, unless one of these functions has no code that was signed."""
+        if not self._functions.issuperset(map(id, functions)):
+            return None
+        how, what, found = zip(*self._reads, strict=True)
+        return Watch(how, what, [*chain.from_iterable(found)], self._arrays)
+
     def _sign(self, value: Any) -> Any:
         kind = type(value)
         if kind in _PLAIN:
@@ -91,12 +133,15 @@ class Signer:
             self._modules[id(value)] = value
         elif kind is types.FunctionType and not _is_of_library(value.__module__):
             return self._inside(value, self._function)
-        elif kind is tuple or kind is list:
+        elif kind is tuple:
             return kind, self._inside(value, self._row) if value else ()
+        elif kind is list:
+            return kind, self._inside(value, self._list)
         elif kind is dict:
             return kind, self._inside(value, self._mapping)
         elif kind is np.ndarray and value.size <= _MOST_ENTRIES and value.dtype.kind in "fiub":
-            return value.shape, value.dtype.str, value.tobytes()
+            self._arrays.append((value, _entries(value)))
+            return self._arrays[-1][1]
         elif kind is Guard or kind is _Clock:
             return kind, self._row(vars(value).values())
         elif kind is Mode:
@@ -122,33 +167,68 @@ class Signer:
         sign, plain = self._sign, _PLAIN
         return tuple([(type(it), it) if type(it) in plain else sign(it) for it in values])
 
+    def _read(self, how: Callable[[Any], Iterable[Any]], what: Any) -> list[Any]:
+        """What is found now, and must be found again."""
+        found = [*how(what)]
+        self._reads.append((how, what, found))
+        return found
+
+    def _values(self, of: dict[str, Any], names: list[str]) -> list[Any]:
+        return self._read(partial(map, of.__getitem__), names)
+
+    def _absent(self, of: dict[str, Any], names: list[str]) -> None:
+        self._read(partial(map, of.__contains__), names)
+
+    def _list(self, values: list[Any]) -> Any:
+        self._size(values)
+        return self._row(self._read(iter, values))
+
     def _mapping(self, values: dict[Any, Any]) -> Any:
-        return self._row([one for pair in values.items() for one in pair])
+        self._size(values)
+        return self._row(self._read(iter, values)), self._row(self._read(dict.values, values))
+
+    def _size(self, values: Any) -> None:
+        # It is read before the entries, so that none of these takes the place of another one.
+        if self._read(_SIZES, (values,))[0] > _MOST_ENTRIES:
+            raise Unsigned
 
     def _module(self, module: types.ModuleType) -> Any:
         own = vars(module)
         # A module may make up what it does not have.
         if "__getattr__" in own and not _is_of_library(module.__name__):
             raise Unsigned
-        found = [(name, self._sign(own[name])) for name in sorted(self._names) if name in own]
-        return id(module), tuple(found)
+        names = sorted(self._names | {"__getattr__"})
+        found = [name for name in names if name in own]
+        self._absent(own, [name for name in names if name not in own])
+        self._read(_TYPES, (module,))
+        return id(module), tuple(found), tuple(map(self._sign, self._values(own, found)))
 
     def _function(self, function: types.FunctionType) -> Any:
-        uses, names = _uses(function.__code__), function.__globals__
+        code, defaults, named, attributes, _ = self._read(_OF_FUNCTIONS, function)
+        uses, names = _uses(code), function.__globals__
         others: dict[str, Any] = getattr(function, "__builtins__")
-        if not uses.is_open:
+        if not (uses.is_open and type(names) is type(others) is dict):
             raise Unsigned
         self._names |= uses.every
+        own = [name for name in uses.names if name in names]
+        rest = [name for name in uses.names if name not in names]
+        self._absent(names, rest)
         try:
-            read = [names[it] if it in names else others[it] for it in uses.names]
-            read += [cell.cell_contents for cell in function.__closure__ or ()]
+            read = self._values(names, own) + self._values(others, rest)
+            read += self._read(_CONTENTS, function.__closure__ or ())
         except (KeyError, ValueError):
             # A name that has no value yet.
             raise Unsigned from None
-        if function.__defaults__ or function.__kwdefaults__ or vars(function):
-            read += [function.__defaults__, function.__kwdefaults__, vars(function)]
-        self.kept.append(function.__code__)
-        return id(function.__code__), self._row(read)
+        self._size(attributes)
+        if defaults or named or attributes:
+            read += [defaults, named, attributes]
+        self.kept.append(code)
+        self._functions.add(id(function))
+        return id(code), tuple(own), self._row(read)
+
+
+def _entries(array: Any) -> Any:
+    return array.shape, array.dtype.str, array.tobytes()
 
 
 def _is_of_library(module: str | None) -> bool:
