@@ -6,7 +6,7 @@ repository.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from stickslip._studies import Study
 
 Floats: TypeAlias = NDArray[np.float64]
+Native: TypeAlias = _native.FormulaSystem
+Orbits: TypeAlias = _native.OrbitSystem
 
 
 class FormulaSystem:
@@ -52,6 +54,20 @@ class FormulaSystem:
         system = cls.__new__(cls)
         system._native, system._surfaces = native, tuple(surfaces)
         return system
+
+    @classmethod
+    def _later(
+        cls, make: Callable[[], Native], surfaces: Sequence[str]
+    ) -> FormulaSystem:
+        """The system that is made when it is looked at."""
+        system = cls.__new__(cls)
+        system.__dict__.update(_make=make, _surfaces=tuple(surfaces))
+        return system
+
+    @cached_property
+    def _native(self) -> Native:
+        made: Native = self.__dict__["_make"]()
+        return made
 
     @property
     def text(self) -> str:
@@ -489,7 +505,7 @@ class FormulaSystem:
         return _attractors.basins(self, components, (x, y), settle, begins, parameters, progress)
 
     @cached_property
-    def _orbits(self) -> _native.OrbitSystem:
+    def _orbits(self) -> Orbits:
         return _native.OrbitSystem(self._native)
 
     def converge(

@@ -70,6 +70,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[object]:
 
     monkeypatch.setattr(_recorded, "Recorded", Counted)
     monkeypatch.setattr(_recorded, "_KEPT", {})
+    monkeypatch.setattr(_recorded, "_WATCHED", {})
     return found
 
 
@@ -206,11 +207,14 @@ def test_only_the_last_ones_are_kept(made: list[object]) -> None:
     for rate in range(2 * _recorded.MOST_KEPT):
         stickslip.solve(closed(1.0 + rate), (0, 1e-3), [1.0])
     assert len(_recorded._KEPT) == _recorded.MOST_KEPT
-    # A tape does not grow without end.
-    count = len(made)
-    for place in range(3 * _recorded.MOST_STARTS):
-        stickslip.solve(of_a_global, (0, 0.1), [float(place)])
-    assert len(made) == count + 3
+    # A tape does not grow without end: starts leave their numbers there once the system is seen.
+    for is_seen, more in ((False, 1), (True, 2)):
+        count = len(made)
+        for place in range(3 * _recorded.MOST_STARTS):
+            found = stickslip.solve(of_a_global, (0, 0.1), [float(place)])
+            assert found.system is not None
+            assert not is_seen or f"y0 = {place}\n" in found.system.text
+        assert len(made) == count + more
 
 
 #: So short that no comparison of formulas and functions comes there.
