@@ -518,6 +518,8 @@ def _key(functions: Iterable[Any], args: tuple[Any, ...], size: int, names: Iter
 
 
 def _arguments(args: Any) -> tuple[Any, ...]:
+    if type(args) is tuple:
+        return args
     if not isinstance(args, Iterable):
         raise TypeError(f"args = {args!r}; expected a tuple, as in args=({args!r},)")
     return tuple(args)

@@ -7,6 +7,7 @@ from array import array
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain, repeat
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -399,25 +400,32 @@ class Recorded:
 
         def until_now(found: dict[str, Any]) -> Solution | None:
             try:
-                return solution(found)
+                self.compare(found, values, at)
             except CannotRecord:
                 return None
-
-        def solution(found: dict[str, Any]) -> Solution:
-            self.compare(found, tuple(values), at)
-            return self._solution(system, found, dense, rerun)
+            note_interruption(found)
+            return self._solution(found, dense, (system, rerun))
 
         with keeping(until_now):
             found = native.run(*rerun, times, dense, report, True)
-        return solution(found)
+        self.compare(found, values, at)
+        return self._solution(found, dense, (system, rerun))
 
     def _solution(
-        self, system: FormulaSystem, found: dict[str, Any], dense: bool, rerun: Rerun
+        self, found: dict[str, Any], dense: bool, again: tuple[FormulaSystem, Rerun]
     ) -> Solution:
         beside = with_variables(found, self.table.variables)
         if self.surfaces:
             beside = self.with_sides(found, beside or Beside({}, {}, [], {}))
-        return system._solution(found, dense, rerun, self.names_of_run, beside)
+        return Solution(
+            found,
+            self.names_of_run,
+            start=found["start_time"],
+            dense=dense,
+            guards="decided",
+            beside=beside,
+            again=again,
+        )
 
     def with_sides(self, found: dict[str, Any], beside: Beside) -> Beside:
         """What stands beside a solution, with the sides of surfaces."""
@@ -445,7 +453,7 @@ class Recorded:
 
     @np.errstate(all="ignore")
     def compare(
-        self, found: dict[str, Any], values: tuple[float, ...] = (), at: Place | None = None
+        self, found: dict[str, Any], values: Sequence[float] = (), at: Place | None = None
     ) -> None:
         """Refuses formulas that are not what their functions return with values of parameters, in
         a run from a start."""
@@ -458,7 +466,7 @@ class Recorded:
         if self.follows and found["event_times"].size:
             self.compare_events(found, values)
 
-    def compare_events(self, found: dict[str, Any], values: tuple[float, ...]) -> None:
+    def compare_events(self, found: dict[str, Any], values: Sequence[float]) -> None:
         """Refuses what follows the first events, if it is not what functions return."""
         n = self.size
         before = found["event_before"].reshape(-1, n + len(self.held))
@@ -498,13 +506,13 @@ class Recorded:
                     self.same(what, given, left_at, values, at[1][:n])
 
     @np.errstate(all="ignore")
-    def compare_start(self, values: tuple[float, ...] = ()) -> None:
+    def compare_start(self, values: Sequence[float] = ()) -> None:
         """Refuses formulas that differ at the start."""
         begun = self.begun_at(values, self.at)
         if begun is not None:
             self.compare_at(begun[0], [begun[1]], values)
 
-    def begun_at(self, values: tuple[float, ...], at: Place) -> tuple[int, Place] | None:
+    def begun_at(self, values: Sequence[float], at: Place) -> tuple[int, Place] | None:
         """The mode, the time and the state where a run begins, if it does."""
         if not self.required and self.beginning is None:
             return self.first, at
@@ -530,25 +538,30 @@ class Recorded:
             self.same("start", given, at, values, found[: self.size])
         return first, (at[0], found)
 
-    def compare_at(self, mode: int, places: list[Place], values: tuple[float, ...]) -> None:
+    def compare_at(self, mode: int, places: list[Place], values: Sequence[float]) -> None:
         """Refuses a right-hand side and guards that return something else than their formulas."""
         found = self.tape.native.evaluate(self.all_formulas[mode], places, list(values))
+        times = [t for t, _ in places]
         states = np.array([y[: self.size] for _, y in places])
-        behind, first = (*values, *self.table.args), 0
+        held = [[self._held(at)[0] for at in places]] if self.held else []
+        first = 0
         for what, function, formulas, signs in self.functions[mode]:
-            last = first + len(formulas)
-            # Each call gets a state of its own.
-            for at, y, row in zip(places, states.copy(), found, strict=True):
-                args = (*self._held(at), *signs, *behind) if self.held else (*signs, *behind)
-                try:
-                    returned = function(at[0], y, *args)
-                except Exception as error:
-                    raise _raised(what, at[0], error) from None
-                if not _is_same(returned, row[first:last]):
-                    _refuse_other(what, at[0], values, returned, row[first:last])
-            first = last
+            recorded = [row[first : first + len(formulas)] for row in found]
+            first += len(formulas)
+            further = map(repeat, (*signs, *values, *self.table.args))
+            returned, error = list[Any](), None
+            try:
+                # Each call gets a state of its own.
+                returned += map(function, times, states.copy(), *held, *further)
+            except Exception as raised:
+                error = raised
+            if not _are_same(returned, recorded):
+                for t, one, numbers in zip(times, returned, recorded, strict=False):
+                    _refuse_other(what, t, values, one, numbers)
+            if len(returned) < len(times):
+                raise _raised(what, times[len(returned)], error or StopIteration())
 
-    def call(self, function: Callable[..., Any], at: Place, values: tuple[float, ...]) -> Any:
+    def call(self, function: Callable[..., Any], at: Place, values: Sequence[float]) -> Any:
         """What a function returns at a time, and at a state with variables behind it."""
         state = np.array(at[1][: self.size])
         return function(at[0], state, *self._held(at), *values, *self.table.args)
@@ -562,7 +575,7 @@ class Recorded:
         what: str,
         function: Any,
         at: Place,
-        values: tuple[float, ...],
+        values: Sequence[float],
         recorded: list[float],
     ) -> None:
         """Refuses a function that returns something else than its formulas."""
@@ -573,18 +586,21 @@ class Recorded:
         _refuse_other(what, at[0], values, found, recorded)
 
 
-def _is_same(found: Any, recorded: list[float]) -> bool:
+def _are_same(returned: list[Any], recorded: list[list[float]]) -> bool:
     """Whether a function has returned the very numbers, as most do."""
-    kind = type(found)
-    if kind is list or kind is tuple:
-        return _EXACT.issuperset(map(type, found)) and [*found] == recorded
-    if kind is np.ndarray:
-        return found.dtype is _DOUBLES and bool(found.tolist() == recorded)
-    return kind in _EXACT and [found] == recorded
+    kinds = {*map(type, returned)}
+    if kinds <= _EXACT:
+        return [[number] for number in returned] == recorded
+    if kinds == {np.ndarray}:
+        doubles = all(array.dtype is _DOUBLES for array in returned)
+        return doubles and [array.tolist() for array in returned] == recorded
+    if kinds <= {list, tuple} and _EXACT.issuperset(map(type, chain.from_iterable(returned))):
+        return [*map(list, returned)] == recorded
+    return False
 
 
 def _refuse_other(
-    what: str, t: float, values: tuple[float, ...], found: Any, recorded: list[float]
+    what: str, t: float, values: Sequence[float], found: Any, recorded: list[float]
 ) -> None:
     """Refuses what a function has returned if its formulas are something else."""
     try:

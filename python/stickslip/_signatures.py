@@ -170,7 +170,8 @@ class Signer:
     def _read(self, how: Callable[[Any], Iterable[Any]], what: Any) -> list[Any]:
         """What is found now, and must be found again."""
         found = [*how(what)]
-        self._reads.append((how, what, found))
+        if what:
+            self._reads.append((how, what, found))
         return found
 
     def _values(self, of: dict[str, Any], names: list[str]) -> list[Any]:
