@@ -23,13 +23,17 @@ from stickslip._systems import Guard, Mode, _Clock
 #: Values that are their own signatures, and numbers, whose zeros have signs.
 _PLAIN = {bool, int, str, bytes, type(None)}
 _NUMBERS = {float, complex, np.float64, np.float32, np.int64, np.int32, np.bool_}
-#: Functions that always do the same.
-_FIXED = (np.ufunc, type(np.dot), types.FunctionType)
+#: Functions of libraries that always do the same, but for those in `_INDIRECT`.
+_FIXED = (type(np.dot), types.FunctionType)
 #: Modules whose functions written in C do, but for those that read by other names than those in the
 #: code, or what is outside.
 _PURE = {"builtins", "math", "cmath", "_operator", "numpy"}
 _INDIRECT = {"eval", "exec", "compile", "globals", "locals", "vars", "dir", "getattr", "hasattr"}
-_INDIRECT |= {"__import__", "open", "input", "id", "hash"}
+_INDIRECT |= {"__import__", "open", "input", "id", "hash", "fromfile", "fromregex", "genfromtxt"}
+_INDIRECT |= {"load", "loadmat", "loadtxt", "mmread", "read", "readsav"}
+_INDIRECT |= {"getbufsize", "geterr", "geterrcall", "get_printoptions"}
+#: Attributes that lead to other names.
+_LEADING = {"format", "format_map"}
 _OF_MODES = {"right_hand_side", "guard_list", "_sources"}
 _LOADS = {"LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS"}
 _HIDING = {"IMPORT_NAME", "LOAD_BUILD_CLASS"}
@@ -64,8 +68,10 @@ def _uses(code: types.CodeType) -> _Uses:
         rest += [inner for inner in codes[-1].co_consts if isinstance(inner, types.CodeType)]
     steps = [step for one in codes for step in dis.get_instructions(one)]
     names = {step.argval for step in steps if step.opname in _LOADS}
-    hides = any(step.opname in _HIDING for step in steps)
     every = frozenset(name for one in codes for name in one.co_names)
+    hides = any(step.opname in _HIDING for step in steps) or not _LEADING.isdisjoint(every)
+    # What Python has of a function or an object: its name, its code, its attributes.
+    hides |= any(name.startswith("__") for name in every)
     return _Uses(tuple(sorted(names)), every, not hides)
 
 
@@ -229,7 +235,7 @@ class Signer:
 
 
 def _entries(array: Any) -> Any:
-    return array.shape, array.dtype.str, array.tobytes()
+    return array.shape, array.strides, array.dtype.str, array.tobytes()
 
 
 def _is_of_library(module: str | None) -> bool:
@@ -245,4 +251,7 @@ def _is_fixed(value: Any) -> bool:
     if isinstance(value, types.BuiltinFunctionType):
         owned = isinstance(value.__self__, types.ModuleType | None)
         return owned and value.__module__ in _PURE and value.__name__ not in _INDIRECT
-    return isinstance(value, _FIXED)
+    if isinstance(value, np.ufunc):
+        # One of objects may call a function of Python.
+        return any("d" in loop for loop in value.types)
+    return isinstance(value, _FIXED) and value.__name__ not in _INDIRECT
