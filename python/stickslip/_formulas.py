@@ -19,7 +19,7 @@ from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
-from stickslip._solutions import Beside, Names, Solution, note_interruption
+from stickslip._solutions import Names, Solution, note_interruption
 
 # A run needs none of these, which take longer to import than numpy's own functions.
 if TYPE_CHECKING:
@@ -56,9 +56,7 @@ class FormulaSystem:
         return system
 
     @classmethod
-    def _later(
-        cls, make: Callable[[], Native], surfaces: Sequence[str]
-    ) -> FormulaSystem:
+    def _later(cls, make: Callable[[], Native], surfaces: Sequence[str]) -> FormulaSystem:
         """The system that is made when it is looked at."""
         system = cls.__new__(cls)
         system.__dict__.update(_make=make, _surfaces=tuple(surfaces))
@@ -563,21 +561,13 @@ class FormulaSystem:
         settings = settings_of(method, tolerances, steps, most, self._size)
         return values, (place, start, state), end, settings
 
-    def _solution(
-        self,
-        found: dict[str, Any],
-        dense: bool,
-        rerun: Rerun,
-        names: Names | None = None,
-        beside: Beside | None = None,
-    ) -> Solution:
+    def _solution(self, found: dict[str, Any], dense: bool, rerun: Rerun) -> Solution:
         return Solution(
             found,
-            names or self._names,
+            self._names,
             start=found["start_time"],
             dense=dense,
             guards="decided",
-            beside=beside,
             again=(self, rerun),
         )
 

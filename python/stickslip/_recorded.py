@@ -590,12 +590,12 @@ def _are_same(returned: list[Any], recorded: list[list[float]]) -> bool:
     """Whether a function has returned the very numbers, as most do."""
     kinds = {*map(type, returned)}
     if kinds <= _EXACT:
-        return [[number] for number in returned] == recorded
+        return len(recorded[0]) == 1 and returned == [*chain.from_iterable(recorded)]
     if kinds == {np.ndarray}:
         doubles = all(array.dtype is _DOUBLES for array in returned)
         return doubles and [array.tolist() for array in returned] == recorded
     if kinds <= {list, tuple} and _EXACT.issuperset(map(type, chain.from_iterable(returned))):
-        return [*map(list, returned)] == recorded
+        return (returned if kinds == {list} else [*map(list, returned)]) == recorded
     return False
 
 
