@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import operator
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from functools import partial
 from itertools import count
@@ -22,6 +22,7 @@ from stickslip._compiled import Compiled, Function, _number
 from stickslip._progress import Progress, Report, reporting
 from stickslip._recorded import Recorded, recording, watched
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
+from stickslip._signatures import reads_of
 from stickslip._solutions import Beside, Names, Solution, variable_columns
 from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
@@ -99,7 +100,10 @@ def solve(
     state = state_at_start(y0)
     given = {name: _number(value, name) for name, value in (parameters or {}).items()}
     listed, further = _event_list(events), _arguments(args)
-    recorded = watched(_key([system, *listed], further, state.size, given))
+    name = mode.name if isinstance(mode, Mode) else str(mode)
+    places = (*map(id, (system, *listed)), None, *map(id, further))
+    key = (*places, state.size, name, *given)
+    recorded = watched(key)
     table = _Table(system, listed, further) if recorded is None else recorded.table
     first = table.index_of(mode)
     if given and table.has_compiled:
@@ -116,7 +120,7 @@ def solve(
         raise ValueError(f"guard_scale = {guard_scale}; expected a number above 0")
     begin, on = (first, start, end), table.sides(sides or {})
     dense = bool(dense_output)
-    job = _Job(table, recorded, begin, state, settings, scale, times, dense, given)
+    job = _Job(table, key, recorded, begin, state, settings, scale, times, dense, given)
     solution = reporting(progress, "solve", partial(_solved, job, on, record))
     if record is None and scale is None and not solution.decided:
         _warn_once(solution.guards)
@@ -127,7 +131,9 @@ class _Job(NamedTuple):
     """A run that is to be done."""
 
     table: _Table
-    #: The formulas of its functions, if these are known already.
+    #: What tells it apart by the places of its functions, and the formulas of these, if they are
+    #: known already.
+    key: Any
     recorded: Recorded | None
     #: The mode, the start and the end.
     begin: tuple[int, float, float]
@@ -199,7 +205,8 @@ def _try_recorded(job: _Job, report: Report | None) -> tuple[Solution | None, st
         return None, "the run goes backwards"
     try:
         names, values = list(job.given), list(job.given.values())
-        found = job.recorded or recording(job.table, (first, start), job.state, names, values)
+        given = (job.table, (first, start), job.state, names, values)
+        found = job.recorded or recording(job.key, *given)
         state = job.state
         run = found.solve(job.begin, state, values, job.settings, job.times, job.dense, report)
         return run, ""
@@ -214,8 +221,8 @@ class _Table:
         self, system: HybridSystem | Function, events: list[Function], args: tuple[Any, ...]
     ) -> None:
         self.args = args
-        #: Of a function: what it is and reads.
-        self.functions = [system, *events]
+        #: What the system was before it was read.
+        self.reads = reads_of(system) if isinstance(system, HybridSystem) else []
         #: Why the functions are not recorded.
         self.reason = ""
         #: Whether conditions of transitions are wanted.
@@ -247,9 +254,12 @@ class _Table:
         #: The name of each guard of each mode, by its place.
         self.places: list[list[str]] = []
 
-    def key(self, size: int, names: Sequence[str]) -> Any:
-        """What tells a function, its events and arguments apart by their places."""
-        return _key(self.functions, self.args, size, names)
+    @property
+    def functions(self) -> list[Any]:
+        """Right-hand sides, events and guards."""
+        sources = [*self.events, *(s for mode in self.system_modes for s in mode._sources)]
+        given = [source.function for source in sources if source.function is not None]
+        return [*(mode.right_hand_side for mode in self.system_modes), *given]
 
     @property
     def formed_of(self) -> tuple[Any, ...]:
@@ -259,8 +269,11 @@ class _Table:
         for mode in self.system_modes:
             found += [mode.name, mode.right_hand_side, len(mode._sources)]
             sources += mode._sources
-        for source in sources:
-            found += [source.function, len(source.guards), *source.guards]
+        for place, source in enumerate(sources):
+            # Those of events are made for the table, and nobody can change them.
+            of_event = place < len(self.events)
+            rows = [tuple(vars(guard).values()) if of_event else guard for guard in source.guards]
+            found += [source.function, len(rows), *rows]
         if not self.plain:
             found += [id(mode.right_hand_side) for mode in self.system_modes]
             found += [id(source.function) for source in sources]
@@ -271,10 +284,7 @@ class _Table:
     @property
     def has_compiled(self) -> bool:
         """Whether a right-hand side or guards are compiled."""
-        sides = [mode.right_hand_side for mode in self.system_modes]
-        sources = [*self.events, *(s for mode in self.system_modes for s in mode._sources)]
-        functions = [*sides, *(source.function for source in sources)]
-        return any(isinstance(function, Compiled) for function in functions)
+        return any(isinstance(function, Compiled) for function in self.functions)
 
     @property
     def may_end(self) -> bool:
@@ -511,10 +521,6 @@ def _event(event: Function, name: str) -> _Source:
         smooth=bool(getattr(event, "smooth", False)),
     )
     return _Source(event, f"event {name!r}", (guard,))
-
-
-def _key(functions: Iterable[Any], args: tuple[Any, ...], size: int, names: Iterable[str]) -> Any:
-    return (*map(id, functions), None, *map(id, args), size, *names)
 
 
 def _arguments(args: Any) -> tuple[Any, ...]:

@@ -654,13 +654,17 @@ def watched(key: Any) -> Recorded | None:
 
 
 def recording(
+    place: Any,
     table: Any,
     begin: tuple[int, float],
     state: NDArray[np.float64],
     names: Sequence[str],
     values: Sequence[float],
 ) -> Recorded:
-    """The formulas of a system, kept as long as all that its functions read is the same."""
+    """The formulas of a system, kept as long as all that its functions read is the same.
+
+    place: what tells the system and its functions apart by their places.
+    """
     given = (table, begin, state, names, values)
     if table.variables or table.surfaces:
         return Recorded(*given)
@@ -679,9 +683,9 @@ def recording(
             _keep(_KEPT, key, (found, signer.kept))
     except Unsigned:
         return Recorded(*given)
-    watch = signer.watch(table.functions) if table.plain else None
+    watch = signer.watch(table.functions, table.reads)
     if watch is not None:
-        _keep(_WATCHED, table.key(state.size, names), (found, watch))
+        _keep(_WATCHED, place, (found, watch))
     return found
 
 

@@ -14,11 +14,11 @@ import types
 from collections.abc import Callable, Iterable
 from functools import partial
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from stickslip._systems import Guard, Mode, _Clock
+from stickslip._systems import Guard, HybridSystem, Mode, _Clock
 
 #: Values that are their own signatures, and numbers, whose zeros have signs.
 _PLAIN = {bool, int, str, bytes, type(None)}
@@ -45,6 +45,10 @@ _OF_FUNCTIONS = operator.attrgetter(
 )
 _CONTENTS = partial(map, operator.attrgetter("cell_contents"))
 _SIZES, _TYPES = partial(map, len), partial(map, type)
+
+
+#: How something was read, of what, and what was found.
+_Read: TypeAlias = tuple[Callable[[Any], Iterable[Any]], Any, list[Any]]
 
 
 class Unsigned(Exception):
@@ -107,8 +111,7 @@ class Signer:
         self._under_way: set[int] = set()
         self._has_modes = False
         self._functions: set[int] = set()
-        #: How something was read, of what, and what was found.
-        self._reads: list[tuple[Callable[[Any], Iterable[Any]], Any, list[Any]]] = []
+        self._reads: list[_Read] = []
         self._arrays: list[tuple[Any, Any]] = []
 
     def signature(self, values: Any) -> Any:
@@ -122,11 +125,11 @@ class Signer:
                     raise Unsigned
                 return own, tuple(modules)
 
-    def watch(self, functions: Iterable[Any]) -> Watch | None:
-        """What was read, unless one of these functions has no code that was signed."""
+    def watch(self, functions: Iterable[Any], reads: Iterable[_Read]) -> Watch | None:
+        """What was read, and was before, unless a function has no code that was signed."""
         if not self._functions.issuperset(map(id, functions)):
             return None
-        how, what, found = zip(*self._reads, strict=True)
+        how, what, found = zip(*self._reads, *reads, strict=True)
         return Watch(how, what, [*chain.from_iterable(found)], self._arrays)
 
     def _sign(self, value: Any) -> Any:
@@ -149,8 +152,9 @@ class Signer:
             self._arrays.append((value, _entries(value)))
             return self._arrays[-1][1]
         elif kind is Guard or kind is _Clock:
-            return kind, self._row(vars(value).values())
+            return kind, self._row(self._read(dict.values, vars(value)))
         elif kind is Mode:
+            self._read(dict.values, vars(value))
             self._has_modes = True
             return kind, value.name
         elif not _is_fixed(value):
@@ -232,6 +236,25 @@ class Signer:
         self.kept.append(code)
         self._functions.add(id(function))
         return id(code), tuple(own), self._row(read)
+
+
+def reads_of(system: HybridSystem) -> list[_Read]:
+    """What a system consists of, down to the functions of its modes."""
+    reads: list[_Read] = []
+
+    def read(how: Any, what: Any) -> None:
+        reads.append((_SIZES, (what,), [len(what)]))
+        reads.append((how, what, [*how(what)]))
+
+    read(dict.values, vars(system))
+    read(dict.values, system._modes)
+    read(dict.values, system._sliding)
+    for mode in system.modes:
+        read(dict.values, vars(mode))
+        read(iter, mode._sources)
+        for source in mode._sources:
+            read(dict.values, vars(source))
+    return reads
 
 
 def _entries(array: Any) -> Any:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import stickslip
-from stickslip import HybridSystem, _recorded
+from stickslip import HybridSystem, Mode, _recorded
 
 RATE = 1.0
 TABLE = {"rate": 1.0, "more": [1.0]}
@@ -384,3 +384,60 @@ def test_events_are_those_of_now(made):
     assert run() == (1, ["middle"], 1)
     half.__code__ = (lambda t, y: y[0] - 2.0).__code__
     assert run() == (0, ["middle"], 0)
+
+
+def relay(wide=1.0):
+    """It turns round at both ends of an interval."""
+    system = HybridSystem()
+    up = system.mode("up", lambda t, y: [1.0])
+    down = system.mode("down", lambda t, y: [-1.0])
+    up.guard("top", lambda t, y: wide - y[0], to=down, direction="falling")
+    down.guard("bottom", lambda t, y: y[0], to=up, direction="falling")
+    up.at("kick", [0.5], reset=lambda t, y: y - 0.125)
+    return system
+
+
+def add(system):
+    system["down"].guard("half", lambda t, y: y[0] - 0.5, to="up", direction="falling")
+
+
+def rename(system):
+    system["down"].name = "back"
+
+
+#: What becomes of a system in place.
+CHANGED_SYSTEMS: dict[str, Callable[[HybridSystem], Any]] = {
+    "another side": lambda it: setattr(it["up"], "right_hand_side", lambda t, y: [2.0]),
+    "another guard": add,
+    "a guard less": lambda it: it["up"]._sources.pop(),
+    "another reset": lambda it: set_guard(it, "reset", lambda t, y: y - 0.25),
+    "another time": lambda it: it["up"]._sources[1].guards[0].times.__setitem__(0, 0.625),
+    "the last time": lambda it: set_guard(it, "terminal", True),
+    "another name": rename,
+    "a new mode in its place": lambda it: it._modes.update(down=Mode("down", lambda t, y: [-0.5])),
+    "the width": lambda it: set_width(it, 0.75),
+}
+
+
+def set_guard(system, name, value):
+    vars(system["up"]._sources[1].guards[0])[name] = value
+
+
+def set_width(system, wide):
+    system["up"]._sources[0].function.__closure__[0].cell_contents = wide
+
+
+@pytest.mark.parametrize("change", CHANGED_SYSTEMS.values(), ids=CHANGED_SYSTEMS)
+def test_a_changed_system_is_seen(change, made):
+    def run(system, mode="up"):
+        found = stickslip.solve(system, (0.0, 3.25), [0.25], mode)
+        assert found.system is not None
+        return found.t.tolist(), found.y.tolist(), found.mode.tolist(), found.events.tolist()
+
+    system, other = relay(), relay()
+    before = [run(system) for _ in range(3)]
+    assert before[0] == before[1] == before[2] and len(made) == 1
+    assert run(system, "down") != before[0] and run(system) == before[0]
+    change(system)
+    change(other)
+    assert run(system) == run(system) == run(other) != before[0]
