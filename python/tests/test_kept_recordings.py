@@ -279,6 +279,7 @@ def renewed(table):
     table["first"] = table.pop("first")
 
 
+SQUARE = np.array([[1.0, 1.0], [20.0, 1.0]])
 #: A value, how it changes (or the one in its place), and what is read of it: 1, and 20 behind.
 CHANGES: dict[str, tuple[Any, Callable[[Any], Any], Callable[[Any], float]]] = {
     "an equal truth value": (1, lambda _: True, lambda k: 20.0 if isinstance(k, bool) else 1.0),
@@ -293,6 +294,7 @@ CHANGES: dict[str, tuple[Any, Callable[[Any], Any], Callable[[Any], float]]] = {
     "of the order": ({"first": 1.0, "last": 20.0}, renewed, lambda k: [*k.values()][0]),
     "a view": (np.ones(2)[1:], lambda k: k.base.fill(20.0), lambda k: k[0]),
     "a shape": (np.ones(2), lambda k: setattr(k, "shape", (2, 1)), lambda k: 19.0 * k.ndim - 18.0),
+    "a layout": (SQUARE, lambda k: np.asfortranarray(k), lambda k: k.ravel("K")[1]),
     "a function": (helper, lambda _: inner, lambda k: 1.0 if k is helper else 20.0),
 }
 
@@ -312,6 +314,48 @@ def test_a_change_is_seen_where_nothing_is_compared(value, change, read, made):
         assert found.y[0, -1] == pytest.approx(math.exp(-1.95))
 
 
+class Fast(types.ModuleType):
+    """A module that makes up an attribute."""
+
+    @property
+    def K(self):  # noqa: N802
+        return 20.0
+
+
+@pytest.mark.parametrize(
+    ("function", "change"),
+    [
+        (lambda t, y: -RATE * y, lambda patch: patch.setitem(globals(), "RATE", 20.0)),
+        (lambda t, y: -HELPERS.K * y, lambda patch: patch.setattr(HELPERS, "K", 20.0)),
+        (lambda t, y: -HELPERS.K * y, lambda patch: patch.setattr(HELPERS, "__class__", Fast)),
+        (lambda t, y: HELPERS.f(y), lambda patch: patch.setattr(HELPERS, "f", lambda y: -20 * y)),
+        (lambda t, y: HELPERS.f(y), lambda patch: patch.setattr(HELPERS, "K", 20.0)),
+        (
+            lambda t, y: -abs(-1.0) * y,
+            lambda patch: patch.setitem(globals(), "abs", lambda x: 20.0),
+        ),
+    ],
+    ids=range(6),
+)
+def test_another_name_is_seen_where_nothing_is_compared(function, change, made, monkeypatch):
+    def slope(t, y):
+        return function(t, y) if briefly(t) else -y
+
+    def run():
+        found = stickslip.solve(slope, (0.0, 1.0), [1.0])
+        assert found.system is not None
+        return found.y[0, -1]
+
+    monkeypatch.setattr(HELPERS, "K", 1.0)
+    for _ in range(3):
+        assert run() == pytest.approx(math.exp(-1.0))
+    assert len(made) == 1
+    with monkeypatch.context() as patch:
+        change(patch)
+        assert [run(), run()] == pytest.approx([math.exp(-1.95)] * 2)
+    assert run() == pytest.approx(math.exp(-1.0))
+
+
 def test_functions_with_the_same_numbers_are_told_apart(made):
     for turn in range(200):
         rate = float(turn % 7)
@@ -326,7 +370,7 @@ def test_threads_change_what_is_read(made):
 
     def changes():
         while not done.is_set():
-            rate[0] = 21.0 - rate[0]
+            rate[0] += 0.001
             time.sleep(1e-5)
 
     interval = sys.getswitchinterval()
@@ -338,7 +382,7 @@ def test_threads_change_what_is_read(made):
     done.set()
     other.join()
     sys.setswitchinterval(interval)
-    for rate[0] in (1.0, 20.0, 1.0, 20.0):
+    for rate[0] in (rate[0], 1.0, rate[0], 20.0):
         found = stickslip.solve(function, (0.0, 1.0), [1.0])
         assert found.y[0, -1] == pytest.approx(math.exp(-0.95 - 0.05 * rate[0]))
 
