@@ -221,6 +221,8 @@ class _Table:
         self, system: HybridSystem | Function, events: list[Function], args: tuple[Any, ...]
     ) -> None:
         self.args = args
+        #: What must live on, so that nothing else gets its place.
+        self.given = (system, *events)
         #: What the system was before it was read.
         self.reads = reads_of(system) if isinstance(system, HybridSystem) else []
         #: Why the functions are not recorded.

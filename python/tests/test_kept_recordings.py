@@ -441,6 +441,13 @@ def relay(wide=1.0):
     return system
 
 
+def test_systems_that_are_gone_are_not_used(made):
+    for turn in range(100):
+        wide = 1.0 + turn % 7 / 8
+        found = stickslip.solve(relay(wide), (0.0, 3.25), [0.25], "up")
+        assert found.t_events[0][0] == pytest.approx(wide - 0.125)
+
+
 def add(system):
     system["down"].guard("half", lambda t, y: y[0] - 0.5, to="up", direction="falling")
 
