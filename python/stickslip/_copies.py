@@ -183,7 +183,7 @@ class Copies:
         if isinstance(value, np.matrix | np.ma.MaskedArray):
             raise CannotRecord(f"the function uses a {type(value).__name__}")
         if type(value) is np.ndarray and value.dtype == np.float64:
-            return value.copy().view(Numbers)
+            return value.copy("K").view(Numbers)
         if isinstance(value, np.ndarray) and value.dtype == object:
             return np.frompyfunc(self.value, 1, 1)(value)
         try:

@@ -6,7 +6,7 @@ repository.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -19,7 +19,7 @@ from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._progress import Progress, keeping, reported, reporting
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
-from stickslip._solutions import Beside, Names, Solution, note_interruption
+from stickslip._solutions import Names, Solution, note_interruption
 
 # A run needs none of these, which take longer to import than numpy's own functions.
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from stickslip._studies import Study
 
 Floats: TypeAlias = NDArray[np.float64]
+Native: TypeAlias = _native.FormulaSystem
+Orbits: TypeAlias = _native.OrbitSystem
 
 
 class FormulaSystem:
@@ -52,6 +54,18 @@ class FormulaSystem:
         system = cls.__new__(cls)
         system._native, system._surfaces = native, tuple(surfaces)
         return system
+
+    @classmethod
+    def _later(cls, make: Callable[[], Native], surfaces: Sequence[str]) -> FormulaSystem:
+        """The system that is made when it is looked at."""
+        system = cls.__new__(cls)
+        system.__dict__.update(_make=make, _surfaces=tuple(surfaces))
+        return system
+
+    @cached_property
+    def _native(self) -> Native:
+        made: Native = self.__dict__["_make"]()
+        return made
 
     @property
     def text(self) -> str:
@@ -489,7 +503,7 @@ class FormulaSystem:
         return _attractors.basins(self, components, (x, y), settle, begins, parameters, progress)
 
     @cached_property
-    def _orbits(self) -> _native.OrbitSystem:
+    def _orbits(self) -> Orbits:
         return _native.OrbitSystem(self._native)
 
     def converge(
@@ -547,21 +561,13 @@ class FormulaSystem:
         settings = settings_of(method, tolerances, steps, most, self._size)
         return values, (place, start, state), end, settings
 
-    def _solution(
-        self,
-        found: dict[str, Any],
-        dense: bool,
-        rerun: Rerun,
-        names: Names | None = None,
-        beside: Beside | None = None,
-    ) -> Solution:
+    def _solution(self, found: dict[str, Any], dense: bool, rerun: Rerun) -> Solution:
         return Solution(
             found,
-            names or self._names,
+            self._names,
             start=found["start_time"],
             dense=dense,
             guards="decided",
-            beside=beside,
             again=(self, rerun),
         )
 

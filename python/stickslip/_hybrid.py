@@ -9,10 +9,10 @@ from __future__ import annotations
 import operator
 import warnings
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from copy import copy
 from functools import partial
 from itertools import count
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,8 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._compiled import Compiled, Function, _number
 from stickslip._progress import Progress, Report, reporting
-from stickslip._recorded import recording
+from stickslip._recorded import Recorded, recording, watched
 from stickslip._run_arguments import MOST_STEPS, settings_of, span, state_at_start, times_within
+from stickslip._signatures import reads_of
 from stickslip._solutions import Beside, Names, Solution, variable_columns
 from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
@@ -97,38 +98,49 @@ def solve(
     """
     start, end = span(t_span)
     state = state_at_start(y0)
-    table = _Table(system, _event_list(events), _arguments(args))
-    first = table.index_of(mode)
     given = {name: _number(value, name) for name, value in (parameters or {}).items()}
+    listed, further = _event_list(events), _arguments(args)
+    name = mode.name if isinstance(mode, Mode) else str(mode)
+    places = (*map(id, (system, *listed)), None, *map(id, further))
+    key = (*places, state.size, name, *given)
+    recorded = watched(key)
+    table = _Table(system, listed, further) if recorded is None else recorded.table
+    first = table.index_of(mode)
     if given and table.has_compiled:
         raise TypeError("parameters are those of functions of Python; expected Compiled(f, [...])")
     steps, most = (max_step, first_step), (max_switches, max_steps)
     settings = settings_of(method, (rtol, atol), steps, most, state.size)
-    settings["guard_scale"] = None if guard_scale is None else _number(guard_scale, "guard_scale")
+    scale = None if guard_scale is None else _number(guard_scale, "guard_scale")
     times = None if t_eval is None else times_within(t_eval, start, end)
     if np.isinf(end) and not table.may_end:
         raise ValueError("t_span is infinite, and no guard or event is terminal")
     if end < start:
         table.refuse_changes()
-    if settings["guard_scale"] is not None and not settings["guard_scale"] > 0.0:
+    if scale is not None and not scale > 0.0:
         raise ValueError(f"guard_scale = {guard_scale}; expected a number above 0")
-    job = _Job(table, (first, start, end), state, settings, times, bool(dense_output), given)
-    run = partial(_solved, job, table.sides(sides or {}), record)
-    solution = reporting(progress, "solve", run)
-    if record is None and settings["guard_scale"] is None and not solution.decided:
+    begin, on = (first, start, end), table.sides(sides or {})
+    dense = bool(dense_output)
+    job = _Job(table, key, recorded, begin, state, settings, scale, times, dense, given)
+    solution = reporting(progress, "solve", partial(_solved, job, on, record))
+    if record is None and scale is None and not solution.decided:
         _warn_once(solution.guards)
     return solution
 
 
-@dataclass(frozen=True)
-class _Job:
+class _Job(NamedTuple):
     """A run that is to be done."""
 
     table: _Table
+    #: What tells it apart by the places of its functions, and the formulas of these, if they are
+    #: known already.
+    key: Any
+    recorded: Recorded | None
     #: The mode, the start and the end.
     begin: tuple[int, float, float]
     state: Floats
     settings: dict[str, Any]
+    #: The shortest time on which guards change, if it is known.
+    scale: float | None
     times: Floats | None
     dense: bool
     #: Values of parameters of Python functions.
@@ -137,27 +149,28 @@ class _Job:
 
 def _solved(job: _Job, sides: list[int], record: bool | None, report: Report | None) -> Solution:
     """Runs the formulas of a system, if it is recorded, and else its functions."""
-    table, (first, start, end) = job.table, job.begin
+    first, start, end = job.begin
     if record is False:
-        table.reason = "record = False"
+        reason = "record = False"
     elif sides:
-        table.reason = "sides are given"
+        reason = "sides are given"
     elif record is None and job.state.size > MOST_RECORDED:
-        table.reason = (
-            f"the state has more than {MOST_RECORDED} components; record=True records it"
-        )
+        reason = f"the state has more than {MOST_RECORDED} components; record=True records it"
     else:
-        found, table.reason = _try_recorded(job, report)
+        found, reason = _try_recorded(job, report)
         if found is not None:
             return found
         if record:
-            raise ValueError(f"record = True, but {table.reason}")
+            raise ValueError(f"record = True, but {reason}")
+    # Other threads may run the same table.
+    table = copy(job.table)
+    table.reason = reason
     columns = _native.run_hybrid(
         table.system(),
         (*job.given.values(), *table.args),
         (first, start, job.state, sides),
         end,
-        job.settings,
+        job.settings | {"guard_scale": job.scale},
         (job.times, job.dense),
         report,
     )
@@ -192,8 +205,11 @@ def _try_recorded(job: _Job, report: Report | None) -> tuple[Solution | None, st
         return None, "the run goes backwards"
     try:
         names, values = list(job.given), list(job.given.values())
-        recorded = recording(job.table, (first, start), job.state, names, values)
-        return recorded.solve(job.begin, job.settings, job.times, job.dense, report), ""
+        given = (job.table, (first, start), job.state, names, values)
+        found = job.recorded or recording(job.key, *given)
+        state = job.state
+        run = found.solve(job.begin, state, values, job.settings, job.times, job.dense, report)
+        return run, ""
     except (CannotRecord, _native.ComputationError) as reason:
         return None, str(reason)
 
@@ -205,6 +221,10 @@ class _Table:
         self, system: HybridSystem | Function, events: list[Function], args: tuple[Any, ...]
     ) -> None:
         self.args = args
+        #: What must live on, so that nothing else gets its place.
+        self.given = (system, *events)
+        #: What the system was before it was read.
+        self.reads = reads_of(system) if isinstance(system, HybridSystem) else []
         #: Why the functions are not recorded.
         self.reason = ""
         #: Whether conditions of transitions are wanted.
@@ -237,29 +257,36 @@ class _Table:
         self.places: list[list[str]] = []
 
     @property
-    def formed_of(self) -> list[Any]:
+    def functions(self) -> list[Any]:
+        """Right-hand sides, events and guards."""
+        sources = [*self.events, *(s for mode in self.system_modes for s in mode._sources)]
+        given = [source.function for source in sources if source.function is not None]
+        return [*(mode.right_hand_side for mode in self.system_modes), *given]
+
+    @property
+    def formed_of(self) -> tuple[Any, ...]:
         """All of which formulas are made. Those of modes are told apart by their places, too."""
         found = [self.plain, *self.args, len(self.args)]
         sources = list(self.events)
         for mode in self.system_modes:
             found += [mode.name, mode.right_hand_side, len(mode._sources)]
             sources += mode._sources
-        for source in sources:
-            found += [source.function, len(source.guards), *source.guards]
+        for place, source in enumerate(sources):
+            # Those of events are made for the table, and nobody can change them.
+            of_event = place < len(self.events)
+            rows = [tuple(vars(guard).values()) if of_event else guard for guard in source.guards]
+            found += [source.function, len(rows), *rows]
         if not self.plain:
             found += [id(mode.right_hand_side) for mode in self.system_modes]
             found += [id(source.function) for source in sources]
             of_modes = sources[len(self.events) :]
             found += [id(guard) for source in of_modes for guard in source.guards]
-        return found
+        return tuple(found)
 
     @property
     def has_compiled(self) -> bool:
         """Whether a right-hand side or guards are compiled."""
-        sides = [mode.right_hand_side for mode in self.system_modes]
-        sources = [*self.events, *(s for mode in self.system_modes for s in mode._sources)]
-        functions = [*sides, *(source.function for source in sources)]
-        return any(isinstance(function, Compiled) for function in functions)
+        return any(isinstance(function, Compiled) for function in self.functions)
 
     @property
     def may_end(self) -> bool:
@@ -315,7 +342,7 @@ class _Table:
     def modes(self, places: list[list[int]] | None) -> list[Any]:
         """The modes for the native module."""
         offset = 0
-        self.places.clear()
+        self.places = []
         rows = []
         width = 1 + max((place for row in places or [] for place in row), default=-1)
         for number, mode in enumerate(self.system_modes):
@@ -499,6 +526,8 @@ def _event(event: Function, name: str) -> _Source:
 
 
 def _arguments(args: Any) -> tuple[Any, ...]:
+    if type(args) is tuple:
+        return args
     if not isinstance(args, Iterable):
         raise TypeError(f"args = {args!r}; expected a tuple, as in args=({args!r},)")
     return tuple(args)

@@ -30,16 +30,22 @@ def method_name(method: str) -> str:
 
 
 def span(t_span: ArrayLike) -> tuple[float, float]:
-    span = _reals(t_span, "t_span")
-    if span.shape != (2,):
-        raise ValueError(f"t_span has shape {span.shape}; expected (start, end)")
-    start, end = span.tolist()
+    times = _floats(t_span)
+    if times is None or len(times) != 2:
+        span = _reals(t_span, "t_span")
+        if span.shape != (2,):
+            raise ValueError(f"t_span has shape {span.shape}; expected (start, end)")
+        times = span.tolist()
+    start, end = times
     if not math.isfinite(start) or math.isnan(end):
         raise ValueError(f"t_span = ({start}, {end}); expected a finite start and an end")
     return start, end
 
 
 def state_at_start(y0: ArrayLike) -> Floats:
+    numbers = _floats(y0)
+    if numbers is not None and all(map(math.isfinite, numbers)):
+        return np.array(numbers)
     state = _reals(y0, "y0")
     if state.ndim != 1:
         raise ValueError(f"y0 has {state.ndim} dimensions; expected one, as in y0=[1.0]")
@@ -47,6 +53,13 @@ def state_at_start(y0: ArrayLike) -> Floats:
         index = int(np.flatnonzero(~np.isfinite(state))[0])
         raise ValueError(f"component {index} of y0 is {state[index]}; expected a finite number")
     return state
+
+
+def _floats(values: Any) -> list[float] | None:
+    """The numbers in a list or a tuple, if these are the most common ones."""
+    if type(values) not in (list, tuple) or not {float, int}.issuperset(map(type, values)):
+        return None
+    return [*map(float, values)]
 
 
 def times_within(t_eval: ArrayLike, start: float, end: float) -> Floats:

@@ -4,14 +4,17 @@ import functools
 import math
 import os
 import sys
+import threading
+import time
 import types
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 import pytest
 import stickslip
-from stickslip import HybridSystem, _recorded
+from stickslip import HybridSystem, Mode, _recorded
 
 RATE = 1.0
 TABLE = {"rate": 1.0, "more": [1.0]}
@@ -70,6 +73,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[object]:
 
     monkeypatch.setattr(_recorded, "Recorded", Counted)
     monkeypatch.setattr(_recorded, "_KEPT", {})
+    monkeypatch.setattr(_recorded, "_WATCHED", {})
     return found
 
 
@@ -206,11 +210,14 @@ def test_only_the_last_ones_are_kept(made: list[object]) -> None:
     for rate in range(2 * _recorded.MOST_KEPT):
         stickslip.solve(closed(1.0 + rate), (0, 1e-3), [1.0])
     assert len(_recorded._KEPT) == _recorded.MOST_KEPT
-    # A tape does not grow without end.
-    count = len(made)
-    for place in range(3 * _recorded.MOST_STARTS):
-        stickslip.solve(of_a_global, (0, 0.1), [float(place)])
-    assert len(made) == count + 3
+    # A tape does not grow without end: starts leave their numbers there once the system is seen.
+    for is_seen, more in ((False, 1), (True, 2)):
+        count = len(made)
+        for place in range(3 * _recorded.MOST_STARTS):
+            found = stickslip.solve(of_a_global, (0, 0.1), [float(place)])
+            assert found.system is not None
+            assert not is_seen or f"y0 = {place}\n" in found.system.text
+        assert len(made) == count + more
 
 
 #: So short that no comparison of formulas and functions comes there.
@@ -218,8 +225,9 @@ def briefly(t):
     return 0.52 < t < 0.57
 
 
-def test_what_is_read_by_another_name_is_read_anew(monkeypatch):
-    given = {"rate": 1.0}
+def test_what_is_read_by_another_name_is_read_anew(monkeypatch, tmp_path):
+    given, path, file = {"rate": 1.0}, str(tmp_path / "rate"), np.loadtxt
+    called = np.frompyfunc(lambda x: x * given["rate"], 1, 1)
     made_up, plain = types.ModuleType("made_up"), types.ModuleType("plain")
     made_up.__getattr__ = given.__getitem__  # type: ignore[method-assign]
     read, readers = getattr, (getattr, os.getenv)
@@ -229,16 +237,258 @@ def test_what_is_read_by_another_name_is_read_anew(monkeypatch):
         lambda t, y: -(readers[0](plain, "rate") if briefly(t) else 1.0) * y,
         lambda t, y: -(float(readers[1]("RATE")) if briefly(t) else 1.0) * y,
         lambda t, y: -(sys.getrecursionlimit() / known if briefly(t) else 1.0) * y,
+        lambda t, y: -(float("{0.rate}".format(plain)) if briefly(t) else 1.0) * y,
+        lambda t, y: -(float(plain.__dict__["rate"]) if briefly(t) else 1.0) * y,
+        lambda t, y: -(float(helper.__name__) if briefly(t) else 1.0) * y,
+        lambda t, y: -(float(file(path)) if briefly(t) else 1.0) * y,
+        lambda t, y: -(float(called(1.0)) if briefly(t) else 1.0) * y,
+        lambda t, y: -(np.get_printoptions()["linewidth"] / wide if briefly(t) else 1.0) * y,
     ]
-    known = sys.getrecursionlimit()
+
+    def helper():
+        """It has the name of a number."""
+
+    known, wide = sys.getrecursionlimit(), np.get_printoptions()["linewidth"]
     for function in functions:
         ends = []
         for rate in (1.0, 20.0):
             given["rate"] = plain.rate = rate  # type: ignore[attr-defined]
             monkeypatch.setenv("RATE", str(rate))
+            (tmp_path / "rate").write_text(str(rate))
+            helper.__name__ = str(rate)
             sys.setrecursionlimit(int(rate * known))
+            np.set_printoptions(linewidth=int(rate * wide))
             try:
                 ends.append(stickslip.solve(function, (0.0, 1.0), [1.0]).y[0, -1])
             finally:
                 sys.setrecursionlimit(known)
+                np.set_printoptions(linewidth=wide)
         assert ends == pytest.approx([math.exp(-1.0), math.exp(-1.95)], abs=1e-9)
+
+
+def of(value, read):
+    """A function that reads a value where nothing is compared."""
+    return lambda t, y: -(read(value) if briefly(t) else 1.0) * y
+
+
+def moved(rows):
+    rows[1].insert(0, rows[0].pop())
+
+
+def renewed(table):
+    table["first"] = table.pop("first")
+
+
+SQUARE = np.array([[1.0, 1.0], [20.0, 1.0]])
+#: A value, how it changes (or the one in its place), and what is read of it: 1, and 20 behind.
+CHANGES: dict[str, tuple[Any, Callable[[Any], Any], Callable[[Any], float]]] = {
+    "an equal truth value": (1, lambda _: True, lambda k: 20.0 if isinstance(k, bool) else 1.0),
+    "an equal float": (3, lambda _: 3.0, lambda k: 20.0 if isinstance(k, float) else 1.0),
+    "the other zero": (0.0, lambda _: -0.0, lambda k: 10.5 - 9.5 * math.copysign(1.0, k)),
+    "no NaN": (math.nan, lambda _: 0.0, lambda k: 1.0 if math.isnan(k) else 20.0),
+    "an entry": ([1.0], lambda k: k.__setitem__(0, 20.0), lambda k: k[0]),
+    "deep inside": ([([1.0],)], lambda k: k[0][0].__setitem__(0, 20.0), lambda k: k[0][0][0]),
+    "one more": ([], lambda k: k.append(1), lambda k: 20.0 if len(k) else 1.0),
+    "to the next row": (([1.0, 20.0], [1.0]), moved, lambda k: k[1][0]),
+    "of a key": ({"first": 1.0}, lambda k: k.update(first=20.0), lambda k: k["first"]),
+    "of the order": ({"first": 1.0, "last": 20.0}, renewed, lambda k: [*k.values()][0]),
+    "a view": (np.ones(2)[1:], lambda k: k.base.fill(20.0), lambda k: k[0]),
+    "a shape": (np.ones(2), lambda k: setattr(k, "shape", (2, 1)), lambda k: 19.0 * k.ndim - 18.0),
+    "a layout": (SQUARE, lambda k: np.asfortranarray(k), lambda k: k.ravel("K")[1]),
+    "a function": (helper, lambda _: inner, lambda k: 1.0 if k is helper else 20.0),
+}
+
+
+@pytest.mark.parametrize(("value", "change", "read"), CHANGES.values(), ids=CHANGES)
+def test_a_change_is_seen_where_nothing_is_compared(value, change, read, made):
+    function = of(value, read)
+    for _ in range(3):
+        assert stickslip.solve(function, (0.0, 1.0), [1.0]).y[0, -1] == pytest.approx(math.exp(-1))
+    assert len(made) == 1 and len(_recorded._WATCHED) == 1
+    other = change(value)
+    if other is not None:
+        function.__closure__[1].cell_contents = other
+    for _ in range(2):
+        found = stickslip.solve(function, (0.0, 1.0), [1.0])
+        assert found.system is not None
+        assert found.y[0, -1] == pytest.approx(math.exp(-1.95))
+
+
+class Fast(types.ModuleType):
+    """A module that makes up an attribute."""
+
+    @property
+    def K(self):  # noqa: N802
+        return 20.0
+
+
+@pytest.mark.parametrize(
+    ("function", "change"),
+    [
+        (lambda t, y: -RATE * y, lambda patch: patch.setitem(globals(), "RATE", 20.0)),
+        (lambda t, y: -HELPERS.K * y, lambda patch: patch.setattr(HELPERS, "K", 20.0)),
+        (lambda t, y: -HELPERS.K * y, lambda patch: patch.setattr(HELPERS, "__class__", Fast)),
+        (lambda t, y: HELPERS.f(y), lambda patch: patch.setattr(HELPERS, "f", lambda y: -20 * y)),
+        (lambda t, y: HELPERS.f(y), lambda patch: patch.setattr(HELPERS, "K", 20.0)),
+        (
+            lambda t, y: -abs(-1.0) * y,
+            lambda patch: patch.setitem(globals(), "abs", lambda x: 20.0),
+        ),
+    ],
+    ids=range(6),
+)
+def test_another_name_is_seen_where_nothing_is_compared(function, change, made, monkeypatch):
+    def slope(t, y):
+        return function(t, y) if briefly(t) else -y
+
+    def run():
+        found = stickslip.solve(slope, (0.0, 1.0), [1.0])
+        assert found.system is not None
+        return found.y[0, -1]
+
+    monkeypatch.setattr(HELPERS, "K", 1.0)
+    for _ in range(3):
+        assert run() == pytest.approx(math.exp(-1.0))
+    assert len(made) == 1
+    with monkeypatch.context() as patch:
+        change(patch)
+        assert [run(), run()] == pytest.approx([math.exp(-1.95)] * 2)
+    assert run() == pytest.approx(math.exp(-1.0))
+
+
+def test_functions_with_the_same_numbers_are_told_apart(made):
+    for turn in range(200):
+        rate = float(turn % 7)
+        found = stickslip.solve(of(rate, lambda k: k), (0.0, 1.0), [1.0])
+        assert found.y[0, -1] == pytest.approx(math.exp(-0.95 - 0.05 * rate))
+    assert len(made) == 7
+
+
+def test_threads_change_what_is_read(made):
+    rate, done = [1.0], threading.Event()
+    function = of(rate, lambda k: k[0])
+
+    def changes():
+        while not done.is_set():
+            rate[0] += 0.001
+            time.sleep(1e-5)
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    other = threading.Thread(target=changes)
+    other.start()
+    for _ in range(300):
+        stickslip.solve(function, (0.0, 1.0), [1.0])
+    done.set()
+    other.join()
+    sys.setswitchinterval(interval)
+    for rate[0] in (rate[0], 1.0, rate[0], 20.0):
+        found = stickslip.solve(function, (0.0, 1.0), [1.0])
+        assert found.y[0, -1] == pytest.approx(math.exp(-0.95 - 0.05 * rate[0]))
+
+
+def test_threads_run_the_same_functions(made):
+    def swings(t, y):
+        return [y[1], -y[0]]
+
+    def passes(t, y):
+        return y[0]
+
+    def run(size):
+        return stickslip.solve(swings, (0.0, 3.0), [size, 0.0], events=passes)
+
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(run, [1.0 + place % 5 for place in range(100)]))
+    for place, one in enumerate(found):
+        assert one.system is not None and one.y[0, 0] == 1.0 + place % 5
+        assert one.system.text.count(f"y0 = {1 + place % 5}") == 1
+        assert one.t_events[0] == pytest.approx([math.pi / 2])
+
+
+def test_events_are_those_of_now(made):
+    def decays(t, y):
+        return -y
+
+    def half(t, y):
+        return y[0] - 0.5
+
+    def run(*events):
+        found = stickslip.solve(decays, (0.0, 1.0), [1.0], events=events or half)
+        return found.status, found.event_names, len(found.t_events[0])
+
+    assert [run(), run()] == [(0, ["half"], 1)] * 2
+    half.terminal = True
+    assert run() == (1, ["half"], 1)
+    half.direction = 1
+    assert run() == (0, ["half"], 0)
+    del half.direction
+    half.terminal, half.__name__ = False, "middle"
+    assert run() == (0, ["middle"], 1) and run(half, half)[1] == ["event 0", "event 1"]
+    half.__dict__ = {"terminal": 1}
+    assert run() == (1, ["middle"], 1)
+    half.__code__ = (lambda t, y: y[0] - 2.0).__code__
+    assert run() == (0, ["middle"], 0)
+
+
+def relay(wide=1.0):
+    """It turns round at both ends of an interval."""
+    system = HybridSystem()
+    up = system.mode("up", lambda t, y: [1.0])
+    down = system.mode("down", lambda t, y: [-1.0])
+    up.guard("top", lambda t, y: wide - y[0], to=down, direction="falling")
+    down.guard("bottom", lambda t, y: y[0], to=up, direction="falling")
+    up.at("kick", [0.5], reset=lambda t, y: y - 0.125)
+    return system
+
+
+def test_systems_that_are_gone_are_not_used(made):
+    for turn in range(100):
+        wide = 1.0 + turn % 7 / 8
+        found = stickslip.solve(relay(wide), (0.0, 3.25), [0.25], "up")
+        assert found.t_events[0][0] == pytest.approx(wide - 0.125)
+
+
+def add(system):
+    system["down"].guard("half", lambda t, y: y[0] - 0.5, to="up", direction="falling")
+
+
+def rename(system):
+    system["down"].name = "back"
+
+
+#: What becomes of a system in place.
+CHANGED_SYSTEMS: dict[str, Callable[[HybridSystem], Any]] = {
+    "another side": lambda it: setattr(it["up"], "right_hand_side", lambda t, y: [2.0]),
+    "another guard": add,
+    "a guard less": lambda it: it["up"]._sources.pop(),
+    "another reset": lambda it: set_guard(it, "reset", lambda t, y: y - 0.25),
+    "another time": lambda it: it["up"]._sources[1].guards[0].times.__setitem__(0, 0.625),
+    "the last time": lambda it: set_guard(it, "terminal", True),
+    "another name": rename,
+    "a new mode in its place": lambda it: it._modes.update(down=Mode("down", lambda t, y: [-0.5])),
+    "the width": lambda it: set_width(it, 0.75),
+}
+
+
+def set_guard(system, name, value):
+    vars(system["up"]._sources[1].guards[0])[name] = value
+
+
+def set_width(system, wide):
+    system["up"]._sources[0].function.__closure__[0].cell_contents = wide
+
+
+@pytest.mark.parametrize("change", CHANGED_SYSTEMS.values(), ids=CHANGED_SYSTEMS)
+def test_a_changed_system_is_seen(change, made):
+    def run(system, mode="up"):
+        found = stickslip.solve(system, (0.0, 3.25), [0.25], mode)
+        assert found.system is not None
+        return found.t.tolist(), found.y.tolist(), found.mode.tolist(), found.events.tolist()
+
+    system, other = relay(), relay()
+    before = [run(system) for _ in range(3)]
+    assert before[0] == before[1] == before[2] and len(made) == 1
+    assert run(system, "down") != before[0] and run(system) == before[0]
+    change(system)
+    change(other)
+    assert run(system) == run(system) == run(other) != before[0]

@@ -627,3 +627,10 @@ def test_jumps_of_the_right_hand_side_are_seen():
 def test_a_switch_that_slides_is_integrated_as_it_is():
     found = solve(lambda t, y: [-np.sign(y[0])], (0, 1.00001), [1.0])
     assert found.success and abs(found.y[0, -1]) < 1e-9
+
+
+def test_an_array_is_recorded_as_it_lies():
+    columns = np.array([[1.0, 3.0], [2.0, 4.0]], order="F")
+    for read in (lambda: columns.ravel("K")[1], lambda: columns.reshape(-1, order="A")[1]):
+        found = solve(lambda t, y, read=read: -read() * y, (0.0, 1.0), [1.0], record=True)
+        assert found.y[0, -1] == pytest.approx(math.exp(-2.0))
