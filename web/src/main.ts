@@ -1,20 +1,21 @@
 // The page: what is where, and what changes what.
 
 import { isTraced, ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
-import { ContactView } from "./contact";
+import { ContactView, type First } from "./contact";
 import { axisNames, Controls, HINT, type Controlled } from "./controls";
-import { Crew, Hand, compiled } from "./crew";
+import { Crew, Hand } from "./crew";
 import { byId, make, onceAFrame } from "./dom";
 import { showLegend } from "./legend";
 import { decoded, encoded } from "./link";
 import { LINE, ofSpheres, ofText, quantitiesOf, type Places } from "./models";
+import { compiled } from "./module";
 import { write } from "./out";
 import { Plane } from "./plane";
 import type { Legend } from "./quantities";
-import { Store, type State } from "./state";
+import { INTERVALS, Store, taskOf, type State } from "./state";
 import { nameOf, SystemView } from "./system";
 import { whenSchemeChanges } from "./theme";
-import type { Answer, Atlas, Law } from "./types";
+import type { Answer, Atlas, Contact, Law } from "./types";
 
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
@@ -41,20 +42,22 @@ class Page implements Controlled {
   constructor(
     module: Promise<WebAssembly.Module>,
     [hand, tracer]: readonly [Hand, Hand],
-    from: { state: State; preset: string },
+    first: First,
+    preset: string,
   ) {
-    this.store = new Store(from.state);
-    this.preset = from.preset;
+    this.store = new Store(first.state);
+    this.preset = preset;
     const cores = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     this.hand = hand;
     this.crew = new Crew(module, cores);
     this.contact = new ContactView(
       this.hand,
+      first,
       () => this.laws,
       () => {
         this.showLines();
-        // The first curves come before the first map, for which all processors work.
-        if (!this.begun) this.show();
+        // The first curves are shown before the first map is begun.
+        if (!this.begun) requestAnimationFrame(() => this.show());
         this.begun = true;
       },
     );
@@ -266,14 +269,28 @@ function ownView(): string {
   return document.querySelector<HTMLMetaElement>("meta[name=stickslip-view]")?.content ?? "";
 }
 
-async function start(): Promise<void> {
+/** Starts what computes, before the page is there: the first contact is asked for. */
+async function open() {
+  const { state, preset } = decoded(location.hash || ownView());
+  let ready = (_: Promise<WebAssembly.Module>): void => {};
+  const module = new Promise<WebAssembly.Module>((resolve) => (ready = resolve));
+  const hands = [new Hand(module), new Hand(module)] as const;
+  const asked = state.tab === "spheres";
+  const task = taskOf(state, INTERVALS.screen);
+  const found = asked ? hands[0].do<Answer & Contact>(task, 5000) : undefined;
+  ready(compiled(hands, asked ? hands[0].tried : Promise.resolve()));
+  module.catch(() => {});
+  return { module, hands, first: { state, found }, preset };
+}
+
+const opened = open();
+opened.catch(() => {});
+
+/** Shows the page, whose controls are there. */
+async function show(): Promise<void> {
   try {
-    // Controls are drawn while workers unpack the module.
-    let ready = (_: Promise<WebAssembly.Module>): void => {};
-    const module = new Promise<WebAssembly.Module>((resolve) => (ready = resolve));
-    const hands = [new Hand(module), new Hand(module)] as const;
-    ready(compiled([...hands]));
-    const page = new Page(module, hands, decoded(location.hash || ownView()));
+    const { module, hands, first, preset } = await opened;
+    const page = new Page(module, hands, first, preset);
     (globalThis as Record<string, unknown>).explorer = page.inside;
     await module;
     document.body.classList.add("ready");
@@ -283,4 +300,4 @@ async function start(): Promise<void> {
   }
 }
 
-void start();
+(globalThis as Record<string, unknown>).explore = show;

@@ -1,6 +1,6 @@
 // What the page shows: one object, whose every field can be in a link.
 
-import type { SceneRequest, Axis } from "./types";
+import type { SceneRequest, Axis, ContactTask } from "./types";
 
 export type Tab = "spheres" | "system";
 export type Axes = "kappa-psi" | "kappa-ratio" | "axis-ratio" | "velocities";
@@ -146,6 +146,16 @@ export function scene(of: Scenery, x: Axis, y: Axis): SceneRequest {
   return axes === "velocities"
     ? { ...common, law: "paper", damping: 0, tangential_damping: 0, bodies }
     : { ...common, law, damping, tangential_damping: tangential, friction, pull_off };
+}
+
+/** So many intervals a course has at least, on the screen and in a file. */
+export const INTERVALS = { screen: 300, file: 1000 };
+const ANY = { low: 1, high: 2, log: false };
+
+/** A contact and its course as a task, which is the same in any window. */
+export function taskOf(of: Pinned, intervals: number): ContactTask {
+  const [x, y] = of.point;
+  return { task: "contact", scene: scene(of, ANY, ANY), x, y, intervals };
 }
 
 /** Listens to changes, and remembers states to go back to. */
