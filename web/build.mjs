@@ -61,6 +61,9 @@ function built(...names) {
 async function packed(module) {
   const { rehearsed } = await imported("opening.ts");
   const { opening, others } = split(module, await called(module, rehearsed));
+  await rehearsed(opening);
+  const { joined } = await imported("join.ts");
+  if (!module.equals(joined(opening, [others]))) throw new Error("the module is another one");
   const middle = others.length >> 1;
   const parts = [others.subarray(0, middle), others.subarray(middle)];
   const options = ["--format=lzma", "-9e", "--stdout"];
