@@ -133,6 +133,8 @@ export class ContactView {
 
   private refuse(error: string): void {
     this.contact = this.course = this.chart = undefined;
+    this.spheres.clear();
+    this.canvas.setAttribute("aria-label", "Course of the contact");
     become(byId("facts"), [make("p", { class: "error", role: "alert" }, error)]);
     become(byId("switches"), []);
     this.draw();

@@ -180,7 +180,9 @@ export class Crew {
   private queue: Band[] = [];
   private generation = 0;
   private left = 0;
-  private finished: () => void = () => {};
+  private finished: (error?: string) => void = () => {};
+  /** Why bands were not computed. */
+  private error: string | undefined;
   private take: (band: Band, part: MapPart) => void = () => {};
 
   constructor(module: Promise<WebAssembly.Module>, count: number) {
@@ -189,12 +191,17 @@ export class Crew {
   }
 
   /** Computes a map instead of the one before. */
-  compute(bands: Band[], take: (band: Band, part: MapPart) => void, finished: () => void): void {
+  compute(
+    bands: Band[],
+    take: (band: Band, part: MapPart) => void,
+    finished: (error?: string) => void,
+  ): void {
     this.generation += 1;
     this.queue = [...bands];
     this.left = bands.length;
     this.take = take;
     this.finished = finished;
+    this.error = undefined;
     this.hands.forEach((hand) => this.feed(hand));
   }
 
@@ -208,8 +215,9 @@ export class Crew {
       if (!answer.counts && !band.again) this.queue.unshift({ ...band, again: true });
       else {
         if (answer.counts) this.take(band, answer);
+        else this.error = answer.error;
         this.left -= 1;
-        if (this.left === 0) this.finished();
+        if (this.left === 0) this.finished(this.error);
       }
     }
     void this.feed(hand);

@@ -21,7 +21,6 @@ const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m"
 
 class Page implements Controlled {
   readonly store: Store;
-  preset: string;
   laws: Law[] = [];
   /** Whether a contact was shown. */
   private begun = false;
@@ -35,6 +34,7 @@ class Page implements Controlled {
   private toastTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly controls: Controls;
   private legend: [Legend, Atlas | undefined] | undefined;
+  private linesKey = "";
   private linesTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly show = onceAFrame(() => this.showNow());
 
@@ -45,8 +45,7 @@ class Page implements Controlled {
     first: First,
     preset: string,
   ) {
-    this.store = new Store(first.state);
-    this.preset = preset;
+    this.store = new Store(first.state, preset);
     const cores = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     this.hand = hand;
     this.crew = new Crew(module, cores);
@@ -88,8 +87,13 @@ class Page implements Controlled {
 
   /** Asks for what does not change: laws, and places with closed forms. */
   private async learn(): Promise<void> {
-    const ask = async (request: object) =>
+    const once = async (request: object) =>
       (await this.hand.do<Answer>({ task: "ask", request })).answer;
+    // A worker may end meanwhile.
+    const ask = async (request: object) => {
+      const answer = await once(request);
+      return answer.error ? once(request) : answer;
+    };
     const [laws, about] = [await ask({ do: "laws" }), await ask({ do: "about" })];
     this.laws = laws as unknown as Law[];
     byId("version").textContent = `stickslip ${about.version}`;
@@ -119,8 +123,11 @@ class Page implements Controlled {
 
   /** Another state altogether, such as a preset's. */
   go(state: State, preset: string): void {
-    this.preset = preset;
-    this.store.change(state);
+    this.store.change(state, preset);
+  }
+
+  get preset(): string {
+    return this.store.preset;
   }
 
   showNow(): void {
@@ -133,6 +140,7 @@ class Page implements Controlled {
     else void this.system.show(state);
     if (model && (this.begun || state.tab === "system")) this.plane.show(model);
     this.showLegend();
+    this.showLines();
     clearTimeout(this.hashTimer);
     this.hashTimer = setTimeout(() => {
       const hash = this.fragment();
@@ -188,16 +196,21 @@ class Page implements Controlled {
         ),
         make("pre", { tabindex: 0, "aria-label": name }, words),
       );
-    const nodes = this.lines().flatMap(([title, { shell, python }]) => [
+    const lines = this.lines();
+    const key = JSON.stringify(lines);
+    // A button that has the focus keeps it.
+    if (key === this.linesKey) return;
+    this.linesKey = key;
+    const nodes = lines.flatMap(([title, { shell, python }]) => [
       make("h3", {}, title),
       ...(shell ? [block(`${title}, command line`, shell)] : []),
       block(`${title}, Python`, python),
     ]);
     byId("lines").replaceChildren(...nodes);
     const { document: found } = this.contact.contact ?? {};
-    if (found && this.store.state.tab === "spheres")
-      byId("spoken").textContent =
-        `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
+    if (!found || this.store.state.tab !== "spheres") return;
+    const words = `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
+    if (byId("spoken").textContent !== words) byId("spoken").textContent = words;
   }
 
   async copy(words: string, what: string): Promise<void> {
@@ -234,7 +247,7 @@ class Page implements Controlled {
   }
 
   /** Writes a file by the name of its button. */
-  write(what: string): Promise<void> {
+  async write(what: string): Promise<void> {
     const {
       store: { state },
       plane,
@@ -248,7 +261,8 @@ class Page implements Controlled {
       : quantitiesOf(system)
           .slice(2)
           .map((it) => it.name);
-    return write(what, { state, plane, contact, system, axes, fields });
+    const refusal = await write(what, { state, plane, contact, system, axes, fields });
+    if (refusal) this.say(refusal);
   }
 
   /** What tests read. */

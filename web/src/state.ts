@@ -158,26 +158,38 @@ export function taskOf(of: Pinned, intervals: number): ContactTask {
   return { task: "contact", scene: scene(of, ANY, ANY), x, y, intervals };
 }
 
+/** A state, and the preset that it comes from. */
+interface Shown {
+  state: State;
+  preset: string;
+}
+
 /** Listens to changes, and remembers states to go back to. */
 export class Store {
   private listeners: ((state: State, before: State) => void)[] = [];
-  private past: State[] = [];
-  private future: State[] = [];
+  private past: Shown[] = [];
+  private future: Shown[] = [];
   private changed = 0;
 
-  constructor(public state: State) {}
+  constructor(
+    public state: State,
+    public preset: string,
+  ) {}
 
   listen(listener: (state: State, before: State) => void): void {
     this.listeners.push(listener);
   }
 
-  /** Changes some fields. Changes within half a second are one step of undoing. */
-  change(patch: Partial<State>): void {
+  /** Changes some fields, or to another preset. Changes within half a second are one step of
+   * undoing. */
+  change(patch: Partial<State>, preset = this.preset): void {
     const now = performance.now();
-    if (now - this.changed > 500) this.past = [...this.past.slice(-100), this.state];
+    const { state } = this;
+    if (now - this.changed > 500)
+      this.past = [...this.past.slice(-100), { state, preset: this.preset }];
     this.changed = now;
     this.future = [];
-    this.become({ ...this.state, ...patch });
+    this.become({ state: { ...state, ...patch }, preset });
   }
 
   undo(): void {
@@ -188,17 +200,17 @@ export class Store {
     this.step(this.future, this.past);
   }
 
-  private step(from: State[], to: State[]): void {
-    const state = from.pop();
-    if (!state) return;
-    to.push(this.state);
+  private step(from: Shown[], to: Shown[]): void {
+    const shown = from.pop();
+    if (!shown) return;
+    to.push({ state: this.state, preset: this.preset });
     this.changed = 0;
-    this.become(state);
+    this.become(shown);
   }
 
-  private become(state: State): void {
+  private become({ state, preset }: Shown): void {
     const before = this.state;
-    this.state = state;
+    [this.state, this.preset] = [state, preset];
     this.listeners.forEach((listener) => listener(state, before));
   }
 }
