@@ -145,7 +145,8 @@ async function page() {
     MAIN: await bundle("main.ts"),
   };
   const frame = readFileSync(join(here, "src/page.html"), "utf8");
-  const html = frame.replace(/@(STYLE|UNPACK|OPENING|SIZE|WASM|WORKER|MAIN)@/g, (_, name) => parts[name]);
+  const places = new RegExp(`@(${Object.keys(parts).join("|")})@`, "g");
+  const html = frame.replace(places, (_, name) => parts[name]);
   const sizes = Object.entries(parts).map(
     ([name, text]) => `${name.toLowerCase()} ${Math.round(text.length / 1000)} kB`,
   );

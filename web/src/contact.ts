@@ -107,7 +107,8 @@ export class ContactView {
     }
     if (!pinned) this.pinned = undefined;
     this.pinnedKey = pinnedKey;
-    const { answer, ms } = await ((state === this.first.state && this.first.found) || this.ask(state));
+    const first = state === this.first.state ? this.first.found : undefined;
+    const { answer, ms } = await (first ?? this.ask(state));
     if (answer.error) this.refuse(answer.error);
     else this.take(state, answer);
     this.worked = ms;

@@ -55,9 +55,16 @@ export class Hand {
       const id = this.next++;
       const timer = undefined;
       this.pending.set(id, { task, most, resolve: resolve as Pending["resolve"], timer, show });
-      this.warm().postMessage({ id, task });
+      this.post(id, task);
       this.time();
     });
+  }
+
+  /** Gives the worker a task. Where there is none yet, none has to be before the module. */
+  private post(id: number, task: Task): void {
+    const post = () => this.pending.has(id) && this.warm().postMessage({ id, task });
+    if (this.worker) post();
+    else this.module.then(post, ignored);
   }
 
   /** Limits the time of the task that the worker does, which is the first one. */
@@ -93,7 +100,7 @@ export class Hand {
   }
 
   /** Starts the worker, if it is not there yet. */
-  private warm(): Worker {
+  warm(): Worker {
     return (this.worker ??= this.start());
   }
 
@@ -107,7 +114,7 @@ export class Hand {
   private die(reason: string, id = Math.min(...this.pending.keys())): void {
     this.end();
     this.fail(id, reason);
-    for (const [other, { task }] of this.pending) this.warm().postMessage({ id: other, task });
+    for (const [other, { task }] of this.pending) this.post(other, task);
   }
 
   private end(): void {

@@ -209,7 +209,8 @@ class Page implements Controlled {
     byId("lines").replaceChildren(...nodes);
     const { document: found } = this.contact.contact ?? {};
     if (!found || this.store.state.tab !== "spheres") return;
-    const words = `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
+    const { switch_count, eps_t } = found;
+    const words = `${switch_count} switches, tangential restitution ${eps_t.toFixed(4)}`;
     if (byId("spoken").textContent !== words) byId("spoken").textContent = words;
   }
 
@@ -289,6 +290,7 @@ async function open() {
   let ready = (_: Promise<WebAssembly.Module>): void => {};
   const module = new Promise<WebAssembly.Module>((resolve) => (ready = resolve));
   const hands = [new Hand(module), new Hand(module)] as const;
+  hands[0].warm();
   const asked = state.tab === "spheres";
   const task = taskOf(state, INTERVALS.screen);
   const found = asked ? hands[0].do<Answer & Contact>(task, 5000) : undefined;

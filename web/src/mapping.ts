@@ -75,8 +75,8 @@ export class Mapping {
     if (into) {
       into.coarse -= 1;
       if (into.coarse > 0) return;
-      [this.map, this.size, this.window, this.block] = [into.map, into.size, into.window, into.block];
-      this.next = undefined;
+      [this.map, this.size, this.window] = [into.map, into.size, into.window];
+      [this.block, this.next] = [into.block, undefined];
       this.paint(this.wanted);
     } else {
       this.paintRows(task.first * block, Math.min(height, task.end * block));

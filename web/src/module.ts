@@ -13,15 +13,17 @@ export async function compiled(
 ): Promise<WebAssembly.Module> {
   const opening = await unzipped(textOf("opening"));
   hands[0]!.open(await WebAssembly.compile(opening));
-  await Promise.all([first, parsed()]);
+  await parsed();
   const unpacker = textOf("unpack");
   const sizes = (byId("wasm").dataset.size ?? "").split(",").map(Number);
   const others = await Promise.all(
     textOf("wasm")
       .split("\n")
-      .map((packed, place) =>
-        hands[place % hands.length]!.unpack({ unpacker, packed, size: sizes[place] ?? 0 }),
-      ),
+      .map(async (packed, place) => {
+        // The worker of the first contact comes when it has it.
+        if (place === 0) await first;
+        return hands[place % hands.length]!.unpack({ unpacker, packed, size: sizes[place] ?? 0 });
+      }),
   );
   return WebAssembly.compile(joined(opening, others));
 }

@@ -58,7 +58,11 @@ export async function write(what: string, from: Sources): Promise<string | undef
 }
 
 /** Hands a file to the user, if there is its content; returns why not. */
-function saved(name: string, content: Blob | string | undefined, type?: string): string | undefined {
+function saved(
+  name: string,
+  content: Blob | string | undefined,
+  type?: string,
+): string | undefined {
   if (content === undefined) return `${name}: not computed`;
   save(name, content, type);
   return undefined;

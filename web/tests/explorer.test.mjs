@@ -756,7 +756,7 @@ test("a damaged page says that it cannot compute, and why", async () => {
   rmSync(folder, { recursive: true });
 });
 
-ofPage("a contact that the opening does not have comes with the whole module", "preset=hooke", async (page) => {
+ofPage("a contact that the opening has not comes with the whole", "preset=hooke", async (page) => {
   await page.waitForFunction(() => globalThis.explorer.contact.contact);
   const { law, restarts } = await page.evaluate(() => ({
     law: globalThis.explorer.contact.contact.document.parameters.law,
