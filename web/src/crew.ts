@@ -28,7 +28,7 @@ let code: string | undefined;
 /** Why there is no module is told once, by who starts the page. */
 const ignored = (): void => {};
 
-/** One worker, which starts with its first task. */
+/** One worker, which is started when it is needed. */
 export class Hand {
   private worker: Worker | undefined;
   private readonly pending = new Map<number, Pending>();
@@ -39,6 +39,8 @@ export class Hand {
   restarts = 0;
   /** What is done when no task is left. */
   idle: () => void = () => {};
+  /** Whether it can begin before the whole module is there. */
+  private opened = false;
   private hasTried: () => void = () => {};
   /** Its first task is done, or waits for the whole module. */
   readonly tried = new Promise<void>((resolve) => (this.hasTried = resolve));
@@ -60,7 +62,7 @@ export class Hand {
     });
   }
 
-  /** Gives the worker a task. Where there is none yet, none has to be before the module. */
+  /** Gives the worker a task. A worker that is not there starts when the module is. */
   private post(id: number, task: Task): void {
     const post = () => this.pending.has(id) && this.warm().postMessage({ id, task });
     if (this.worker) post();
@@ -79,12 +81,15 @@ export class Hand {
       if (this.pending.get(id) === task) task.timer ??= setTimeout(late, most);
     };
     // To wait for the module is no part of it.
-    this.module.then(begin, ignored);
+    if (this.opened) begin();
+    else this.module.then(begin, ignored);
   }
 
   /** Begins tasks with the opening of the module, until the whole is there. */
   open(module: WebAssembly.Module): void {
     this.warm().postMessage({ module, opening: true });
+    this.opened = true;
+    this.time();
   }
 
   /** Unpacks a part of the module, for which nothing else has to be there. */
@@ -119,6 +124,7 @@ export class Hand {
 
   private end(): void {
     this.restarts += 1;
+    this.opened = false;
     // The module is needed by all.
     if (this.unpacked) return;
     this.worker?.terminate();
@@ -156,8 +162,12 @@ export class Hand {
         this.settle(data.id, data);
       } else if (data.opening && pending) {
         // What the opening does not have, the whole module has.
+        this.opened = false;
         this.hasTried();
         worker.postMessage({ id: data.id, task: pending.task });
+        clearTimeout(pending.timer);
+        pending.timer = undefined;
+        this.time();
       } else {
         this.die(`a worker ended (${data.dead}); it was started again`, data.id);
       }

@@ -82,7 +82,11 @@ class Page implements Controlled {
       this.plane.redraw();
     });
     this.showNow();
-    void this.learn();
+    // The opening does not have what this needs.
+    module.then(
+      () => this.learn(),
+      () => {},
+    );
   }
 
   /** Asks for what does not change: laws, and places with closed forms. */
