@@ -86,8 +86,8 @@ ofPage(
   "values beyond single precision have colours",
   query({
     tab: "system",
-    text: `parameter a = 2 in [1, 9]
-parameter b = 1 in [1, 2]
+    text: `parameter a = 2 in 1:9
+parameter b = 1 in 1:2
 state x = 0
 x' = a*b*1e38
 end = 1`,
@@ -204,7 +204,7 @@ ofPage(
   "dragging a slow system computes its newest run, not all of them",
   query({
     tab: "system",
-    text: "parameter k = 1 in [1, 9]\nstate x = 1\nx' = sin(200*k*t)*x\nend = 300",
+    text: "parameter k = 1 in 1:9\nstate x = 1\nx' = sin(200*k*t)*x\nend = 100",
     boundaries: "false",
   }),
   async (page) => {
@@ -222,13 +222,12 @@ ofPage(
         store.change({ set: { k: 1 + step / 1000 } });
         await new Promise((done) => requestAnimationFrame(done));
       }
-      const before = asked;
       while (hand.busy) await new Promise((done) => setTimeout(done, 20));
-      return [before, asked, system.hand.restarts, system.runKey];
+      return [asked, hand.restarts, system.runKey];
     });
-    // At any time one is computed, and one waits.
-    assert.ok(asked[1] - asked[0] <= 1 && asked[2] === 0, JSON.stringify(asked));
-    assert.match(asked[3], /"k":1.06/);
+    // One is computed, and one waits: others are left out.
+    assert.ok(asked[0] < 55 && asked[1] === 0, JSON.stringify(asked));
+    assert.match(asked[2], /"k":1.06/);
   },
 );
 
@@ -254,7 +253,7 @@ ofPage("mistyped numbers are put back", "preset=figure2", async (page) => {
   await back("#most", "0x", "12");
   await back("#most", "1e9", "200");
   await back("#end", "soon", "");
-  await back('#sliders [data-parameter="belt"][type="text"]', "Infinity", "0.2");
+  await back('#sliders [data-parameter="belt"][type="text"]', "Infinity", "0.5");
 });
 
 ofPage("an axis without values above 0 cannot be logarithmic", BALL, async (page) => {
@@ -294,8 +293,8 @@ ofPage(
   "a parameter may have any name",
   query({
     tab: "system",
-    text: `parameter constructor = 2 in [1, 3]
-parameter valueOf = 1 in [1, 2]
+    text: `parameter constructor = 2 in 1:3
+parameter valueOf = 1 in 1:2
 state x = 1
 x' = constructor - valueOf
 end = 1`,
