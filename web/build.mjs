@@ -14,6 +14,7 @@ import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
+import { called, split, stripped } from "./split.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = dirname(here);
@@ -50,43 +51,66 @@ function compile() {
   execFileSync("cargo", args, { cwd: root, env, stdio: "inherit" });
 }
 
-/** The module without its custom sections: names, and by what it was made. */
-function stripped(bytes) {
-  let at = 8;
-  const parts = [bytes.subarray(0, at)];
-  const number = () => {
-    let [value, shift, byte] = [0, 0, 0];
-    do {
-      byte = bytes[at++];
-      value += (byte & 127) * 2 ** shift;
-      shift += 7;
-    } while (byte & 128);
-    return value;
-  };
-  while (at < bytes.length) {
-    const begin = at;
-    const kind = bytes[at++];
-    at = number() + at;
-    if (kind !== 0) parts.push(bytes.subarray(begin, at));
-  }
-  return Buffer.concat(parts);
-}
-
 /** A module as it is built, without what it need not have. */
 function built(...names) {
   return stripped(readFileSync(join(target, TRIPLE, "web", ...names)));
 }
 
-/** The module in parts, each a file of LZMA: two workers unpack them. */
-function packed(module) {
-  const middle = module.length >> 1;
-  const parts = [module.subarray(0, middle), module.subarray(middle)];
+/** The module in parts: its opening, which the browser unpacks by itself, and the other functions
+ * in files of LZMA, which two workers unpack. */
+async function packed(module) {
+  const { rehearsed } = await imported("opening.ts");
+  const { opening, others } = split(module, await called(module, rehearsed));
+  await rehearsed(opening);
+  const { joined } = await imported("join.ts");
+  if (!module.equals(joined(opening, [others]))) throw new Error("the module is another one");
+  const middle = others.length >> 1;
+  const parts = [others.subarray(0, middle), others.subarray(middle)];
   const options = ["--format=lzma", "-9e", "--stdout"];
   const pack = (bytes) => execFileSync("xz", options, { input: bytes, maxBuffer: 1e9 });
   return {
+    OPENING: zipped(opening),
     SIZE: parts.map((part) => part.length).join(),
-    WASM: parts.map((part) => pack(part).toString("base64")).join("\n"),
+    WASM: parts.map((part) => text(pack(part))).join("\n"),
   };
+}
+
+function zipped(bytes) {
+  return text(gzipSync(bytes, { level: 9 }));
+}
+
+/** Bytes as a text: each 13 bits are two characters, and up to 6 bits at the end are one. Of those
+ * from ! to ~, a page cannot have ", & and < everywhere; base64 would be a twelfth longer. */
+function text(bytes) {
+  const codes = Array.from({ length: 94 }, (_, index) => String.fromCharCode(33 + index));
+  const digits = codes.filter((it) => !['"', "&", "<"].includes(it));
+  const found = [];
+  let [held, bits] = [0, 0];
+  for (const byte of bytes) {
+    held |= byte << bits;
+    bits += 8;
+    if (bits < 13) continue;
+    const value = held & 8191;
+    found.push(digits[value % 91], digits[Math.floor(value / 91)]);
+    held >>>= 13;
+    bits -= 13;
+  }
+  if (bits > 0) found.push(digits[held % 91]);
+  if (bits > 6) found.push(digits[Math.floor(held / 91)]);
+  return found.join("");
+}
+
+/** What a source of the page exports, for the build itself. */
+async function imported(entry) {
+  const { outputFiles } = await build({
+    entryPoints: [join(here, "src", entry)],
+    bundle: true,
+    write: false,
+    format: "esm",
+    target: "es2022",
+  });
+  const base64 = Buffer.from(outputFiles[0].contents).toString("base64");
+  return import(`data:text/javascript;base64,${base64}`);
 }
 
 async function bundle(entry) {
@@ -115,13 +139,14 @@ async function css() {
 async function page() {
   const parts = {
     STYLE: await css(),
-    UNPACK: gzipSync(built("examples", "unpack.wasm"), { level: 9 }).toString("base64"),
-    ...packed(built("stickslip_explorer.wasm")),
+    UNPACK: zipped(built("examples", "unpack.wasm")),
+    ...(await packed(built("stickslip_explorer.wasm"))),
     WORKER: await bundle("worker.ts"),
     MAIN: await bundle("main.ts"),
   };
   const frame = readFileSync(join(here, "src/page.html"), "utf8");
-  const html = frame.replace(/@(STYLE|UNPACK|SIZE|WASM|WORKER|MAIN)@/g, (_, name) => parts[name]);
+  const places = new RegExp(`@(${Object.keys(parts).join("|")})@`, "g");
+  const html = frame.replace(places, (_, name) => parts[name]);
   const sizes = Object.entries(parts).map(
     ([name, text]) => `${name.toLowerCase()} ${Math.round(text.length / 1000)} kB`,
   );

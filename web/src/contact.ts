@@ -2,19 +2,22 @@
 
 import { described, drawChart, timeAt, type Chart } from "./chart";
 import { chartOf, columns, type Course } from "./course";
-import type { Hand } from "./crew";
+import type { Hand, Result } from "./crew";
 import { become, byId, fit, frame, make, onceAFrame, sizeOf } from "./dom";
 import { fixed, short } from "./number";
 import { CanvasPen } from "./pen";
 import { Spheres } from "./spheres";
-import { scene, type Pinned, type State } from "./state";
+import { INTERVALS, taskOf, type Pinned, type State } from "./state";
 import type { Answer, Collision, Contact, Law } from "./types";
 
-/** So many intervals a course has at least, on the screen and in a file. */
-const INTERVALS = { screen: 300, file: 1000 };
 /** So many phases of an itinerary are shown. */
 const MOST_PHASES = 60;
-const ANY = { low: 1, high: 2, log: false };
+
+/** A state and its contact. */
+export interface First {
+  state: State;
+  found: Promise<Result<Answer & Contact>> | undefined;
+}
 
 export class ContactView {
   contact: Contact | undefined;
@@ -37,6 +40,8 @@ export class ContactView {
 
   constructor(
     private readonly hand: Hand,
+    /** The contact of the first state, which was asked for before the page was there. */
+    private readonly first: First,
     private readonly laws: () => Law[],
     private readonly changed: () => void,
   ) {
@@ -84,7 +89,7 @@ export class ContactView {
   /** Shows the contact of a state, as soon as it is computed. */
   show(state: State): void {
     this.latest = state;
-    const key = JSON.stringify([scene(state, ANY, ANY), state.point, state.pinned]);
+    const key = JSON.stringify([taskOf(state, INTERVALS.screen), state.pinned]);
     if (key === this.wanted) return;
     this.wanted = key;
     if (!this.computing) void this.compute(state, key);
@@ -94,18 +99,16 @@ export class ContactView {
 
   private async compute(state: State, key: string): Promise<void> {
     this.computing = true;
-    const ask = { task: "contact" as const, intervals: INTERVALS.screen };
     const pinnedKey = JSON.stringify(state.pinned);
-    const pinned = state.pinned;
+    const { pinned } = state;
     if (pinned && pinnedKey !== this.pinnedKey) {
-      const of = { ...ask, scene: scene(pinned, ANY, ANY), x: pinned.point[0], y: pinned.point[1] };
-      const { answer } = await this.hand.do<Answer & Contact>(of, 5000);
+      const { answer } = await this.ask(pinned);
       this.pinned = answer.error ? undefined : answer;
     }
     if (!pinned) this.pinned = undefined;
     this.pinnedKey = pinnedKey;
-    const of = { ...ask, scene: scene(state, ANY, ANY), x: state.point[0], y: state.point[1] };
-    const { answer, ms } = await this.hand.do<Answer & Contact>(of, 5000);
+    const first = state === this.first.state ? this.first.found : undefined;
+    const { answer, ms } = await (first ?? this.ask(state));
     if (answer.error) this.refuse(answer.error);
     else this.take(state, answer);
     this.worked = ms;
@@ -113,11 +116,13 @@ export class ContactView {
     if (this.wanted !== key) this.next();
   }
 
+  private ask(of: Pinned): Promise<Result<Answer & Contact>> {
+    return this.hand.do<Answer & Contact>(taskOf(of, INTERVALS.screen), 5000);
+  }
+
   /** The course of the contact of a state, as fine as a file has it. */
   async fine(state: State): Promise<Course | undefined> {
-    const [x, y] = state.point;
-    const task = { task: "contact" as const, scene: scene(state, ANY, ANY), x, y };
-    const { answer } = await this.hand.do<Answer & Contact>({ ...task, intervals: INTERVALS.file });
+    const { answer } = await this.hand.do<Answer & Contact>(taskOf(state, INTERVALS.file));
     return answer.error ? undefined : columns(answer);
   }
 
@@ -129,6 +134,8 @@ export class ContactView {
 
   private refuse(error: string): void {
     this.contact = this.course = this.chart = undefined;
+    this.spheres.clear();
+    this.canvas.setAttribute("aria-label", "Course of the contact");
     become(byId("facts"), [make("p", { class: "error", role: "alert" }, error)]);
     become(byId("switches"), []);
     this.draw();

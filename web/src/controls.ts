@@ -1,6 +1,6 @@
 // The controls: what they show of a state, and how they change it.
 
-import { byId, make } from "./dom";
+import { byId, make, put } from "./dom";
 import { decoded } from "./link";
 import { AXES, LINE, quantitiesOf, units, type Places } from "./models";
 import { rounded, typed } from "./number";
@@ -12,7 +12,6 @@ import {
   isAdhesive,
   pin,
   type Axes,
-  type Bodies,
   type Quantity,
   type State,
   type Store,
@@ -144,7 +143,7 @@ export class Controls {
       put(id, state[id]);
       put(`${id}-number`, state[id]);
     }
-    put("alpha", state.alpha === 2 / 7 ? "2/7" : state.alpha);
+    put("alpha", alphaOf(state));
     const { other: second, ...first } = state.bodies;
     for (const [key, value] of Object.entries(first)) put(key, value);
     for (const [key, value] of Object.entries(second ?? {})) put(`other-${key}`, value);
@@ -229,16 +228,12 @@ export class Controls {
           input.value = String(axisOf(key)[1][end]);
         });
       }
-      on(`${key}-log`, "change", ({ checked }) => {
+      on(`${key}-log`, "change", (input) => {
+        const { checked } = input;
         const [name, axis] = axisOf(key);
-        if (checked && axis.high <= 0) return page.showNow();
-        store.change({
-          [name]: {
-            ...axis,
-            log: checked,
-            low: checked && axis.low <= 0 ? axis.high / 1000 : axis.low,
-          },
-        });
+        const low = checked && axis.low <= 0 ? axis.high / 1000 : axis.low;
+        if (!checked || low > 0) store.change({ [name]: { ...axis, log: checked, low } });
+        input.checked = axisOf(key)[1].log;
       });
     }
     on("point-x", "change", (input) => this.typePoint(0, input));
@@ -264,20 +259,25 @@ export class Controls {
     on("alpha", "change", (input) => {
       const value = typed(input.value);
       if (value !== undefined && value > 0 && value <= 1) store.change({ alpha: value });
-      page.showNow();
+      input.value = alphaOf(store.state);
     });
-    const body = (id: string, change: (bodies: Bodies, value: number) => Bodies) =>
-      on(id, "change", (input) => {
-        const value = typed(input.value);
-        if (value !== undefined) store.change({ bodies: change(store.state.bodies, value) });
-      });
     const { other: _, ...one } = store.state.bodies;
-    for (const key of Object.keys(one)) body(key, (bodies, value) => ({ ...bodies, [key]: value }));
+    for (const key of Object.keys(one) as (keyof typeof one)[])
+      on(key, "change", (input) => {
+        const value = typed(input.value);
+        const { bodies } = store.state;
+        if (value !== undefined) store.change({ bodies: { ...bodies, [key]: value } });
+        input.value = String(store.state.bodies[key]);
+      });
     for (const key of BALL)
-      body(`other-${key}`, ({ other, ...one }, value) => ({
-        ...one,
-        other: { ...(other ?? ballOf(one)), [key]: value },
-      }));
+      on(`other-${key}`, "change", (input) => {
+        const value = typed(input.value);
+        const { other, ...first } = store.state.bodies;
+        const second = other ?? ballOf(first);
+        const changed = value === undefined ? second : { ...second, [key]: value };
+        if (value !== undefined) store.change({ bodies: { ...first, other: changed } });
+        input.value = String(changed[key]);
+      });
     on("other", "change", ({ checked }) => {
       const { bodies } = store.state;
       store.change({ bodies: { ...bodies, other: checked ? ballOf(bodies) : null } });
@@ -285,8 +285,10 @@ export class Controls {
     byId("pin").onclick = () =>
       store.change({ pinned: store.state.pinned ? null : pin(store.state) });
     byId("home").onclick = () => {
-      const { x, y, axes } = presetOf(page.preset).state;
-      store.change(store.state.tab === "spheres" ? { x, y, axes } : page.system.home());
+      const { x, y, axes, point } = presetOf(page.preset).state;
+      // In other axes the point is another one.
+      const other = axes === store.state.axes ? {} : { axes, point, pinned: null };
+      store.change(store.state.tab === "spheres" ? { x, y, ...other } : page.system.home());
     };
     byId("undo").onclick = () => store.undo();
     byId("redo").onclick = () => store.redo();
@@ -336,6 +338,9 @@ export class Controls {
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // Beside the plane and the contact, Space scrolls and opens what has the focus.
+    const free = target === document.body || target instanceof HTMLCanvasElement;
+    if ((key === " " && !free) || byId<HTMLDialogElement>("help").open) return;
     const acts: Record<string, () => void> = {
       b: () => page.store.change({ boundaries: !page.store.state.boundaries }),
       p: () => byId("pin").click(),
@@ -345,11 +350,15 @@ export class Controls {
       "?": () => byId("show-help").click(),
       " ": () => byId("play").click(),
     };
-    const act = acts[key];
-    if (!act || (key === " " && target instanceof HTMLButtonElement)) return;
+    const act = Object.hasOwn(acts, key) && acts[key];
+    if (!act) return;
     act();
     event.preventDefault();
   }
+}
+
+function alphaOf({ alpha }: State): string {
+  return alpha === 2 / 7 ? "2/7" : String(alpha);
 }
 
 /** What the axes of a state are called. */
@@ -357,10 +366,4 @@ export function axisNames(state: State): [string, string] {
   if (state.tab === "system") return [state.across, state.up];
   const [one, other] = AXES[state.axes];
   return [one.symbol, other.symbol];
-}
-
-/** Puts a value into a control, unless it is being typed. */
-function put(id: string, value: string | number): void {
-  const input = byId<HTMLInputElement | HTMLSelectElement>(id);
-  if (input !== document.activeElement || input.type === "range") input.value = String(value);
 }

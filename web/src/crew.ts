@@ -4,15 +4,17 @@ import { byId } from "./dom";
 import type { Answer, MapPart, Task } from "./types";
 import type { Packed } from "./unpack";
 
-type Result<T> = { answer: T; ms: number };
+export type Result<T> = { answer: T; ms: number };
 
 type Message =
   | { part: Uint8Array }
   | { damaged: string }
-  | ({ id: number; curve?: Float64Array; dead?: string } & Result<never>);
+  | ({ id: number; curve?: Float64Array; dead?: string; opening?: boolean } & Result<never>);
 
 interface Pending {
   task: Task;
+  /** The limit of its time, in milliseconds. */
+  most: number | undefined;
   resolve(result: Result<never>): void;
   timer: ReturnType<typeof setTimeout> | undefined;
   show: Show | undefined;
@@ -26,24 +28,7 @@ let code: string | undefined;
 /** Why there is no module is told once, by who starts the page. */
 const ignored = (): void => {};
 
-/** The module, compiled from the text that the page holds in several parts: workers unpack them at the
- * same time. */
-export async function compiled(hands: Hand[]): Promise<WebAssembly.Module> {
-  const holder = byId("wasm");
-  const unpacker = byId("unpack").textContent ?? "";
-  const sizes = (holder.dataset.size ?? "").split(",").map(Number);
-  const parts = (holder.textContent ?? "").trim().split("\n");
-  const found = await Promise.all(
-    parts.map((packed, place) =>
-      hands[place % hands.length]!.unpack({ unpacker, packed, size: sizes[place] ?? 0 }),
-    ),
-  );
-  const module = new Uint8Array(found.reduce((sum, part) => sum + part.length, 0));
-  found.reduce((at, part) => (module.set(part, at), at + part.length), 0);
-  return WebAssembly.compile(module);
-}
-
-/** One worker, which starts with its first task. */
+/** One worker, which is started when it is needed. */
 export class Hand {
   private worker: Worker | undefined;
   private readonly pending = new Map<number, Pending>();
@@ -54,6 +39,11 @@ export class Hand {
   restarts = 0;
   /** What is done when no task is left. */
   idle: () => void = () => {};
+  /** Whether it can begin before the whole module is there. */
+  private opened = false;
+  private hasTried: () => void = () => {};
+  /** Its first task is done, or waits for the whole module. */
+  readonly tried = new Promise<void>((resolve) => (this.hasTried = resolve));
 
   constructor(private readonly module: Promise<WebAssembly.Module>) {}
 
@@ -65,28 +55,52 @@ export class Hand {
   do<T = Answer>(task: Task, most?: number, show?: Show): Promise<Result<T>> {
     return new Promise((resolve) => {
       const id = this.next++;
-      const late = () => this.die(`this takes longer than ${(most ?? 0) / 1000} s`, id);
-      const timer = most === undefined ? undefined : setTimeout(late, most);
-      this.pending.set(id, { task, resolve: resolve as Pending["resolve"], timer, show });
+      const timer = undefined;
+      this.pending.set(id, { task, most, resolve: resolve as Pending["resolve"], timer, show });
       this.post(id, task);
+      this.time();
     });
   }
 
+  /** Gives the worker a task. A worker that is not there starts when the module is. */
   private post(id: number, task: Task): void {
-    const worker = this.warm();
-    // Behind the module, which the worker gets first.
-    this.module.then(() => worker.postMessage({ id, task }), ignored);
+    const post = () => this.pending.has(id) && this.warm().postMessage({ id, task });
+    if (this.worker) post();
+    else this.module.then(post, ignored);
+  }
+
+  /** Limits the time of the task that the worker does, which is the first one. */
+  private time(): void {
+    const [first] = this.pending;
+    if (!first) return;
+    const [id, task] = first;
+    const { most } = task;
+    if (most === undefined || task.timer !== undefined) return;
+    const late = () => this.die(`this takes longer than ${most / 1000} s`, id);
+    const begin = () => {
+      if (this.pending.get(id) === task) task.timer ??= setTimeout(late, most);
+    };
+    // To wait for the module is no part of it.
+    if (this.opened) begin();
+    else this.module.then(begin, ignored);
+  }
+
+  /** Begins tasks with the opening of the module, until the whole is there. */
+  open(module: WebAssembly.Module): void {
+    this.warm().postMessage({ module, opening: true });
+    this.opened = true;
+    this.time();
   }
 
   /** Unpacks a part of the module, for which nothing else has to be there. */
-  unpack(part: Packed): Promise<Uint8Array> {
+  unpack(packed: Packed): Promise<Uint8Array> {
     return new Promise((resolve, reject) => {
       this.unpacked = (part) => {
         this.unpacked = undefined;
         if (part instanceof Error) reject(part);
         else resolve(part);
       };
-      this.warm().postMessage(part);
+      this.warm().postMessage(packed);
     });
   }
 
@@ -110,6 +124,7 @@ export class Hand {
 
   private end(): void {
     this.restarts += 1;
+    this.opened = false;
     // The module is needed by all.
     if (this.unpacked) return;
     this.worker?.terminate();
@@ -124,8 +139,10 @@ export class Hand {
     const pending = this.pending.get(id);
     this.pending.delete(id);
     clearTimeout(pending?.timer);
+    this.hasTried();
     pending?.resolve(result);
-    if (!this.busy) this.idle();
+    if (this.busy) this.time();
+    else this.idle();
   }
 
   private start(): Worker {
@@ -141,20 +158,26 @@ export class Hand {
       const pending = this.pending.get(data.id);
       if (data.curve) {
         pending?.show?.(data.curve);
-        return;
-      }
-      if (data.dead !== undefined) {
+      } else if (data.dead === undefined) {
+        this.settle(data.id, data);
+      } else if (data.opening && pending) {
+        // What the opening does not have, the whole module has.
+        this.opened = false;
+        this.hasTried();
+        worker.postMessage({ id: data.id, task: pending.task });
+        clearTimeout(pending.timer);
+        pending.timer = undefined;
+        this.time();
+      } else {
         this.die(`a worker ended (${data.dead}); it was started again`, data.id);
-        return;
       }
-      this.settle(data.id, data);
     };
     worker.onerror = (event) => {
       event.preventDefault();
       this.unpacked?.(new Error("a worker ended before it was there"));
       this.die("a worker ended; it was started again");
     };
-    this.module.then((module) => worker.postMessage({ module }), ignored);
+    this.module.then((module) => worker.postMessage({ module, opening: false }), ignored);
     return worker;
   }
 }
@@ -174,7 +197,9 @@ export class Crew {
   private queue: Band[] = [];
   private generation = 0;
   private left = 0;
-  private finished: () => void = () => {};
+  private finished: (error?: string) => void = () => {};
+  /** Why bands were not computed. */
+  private error: string | undefined;
   private take: (band: Band, part: MapPart) => void = () => {};
 
   constructor(module: Promise<WebAssembly.Module>, count: number) {
@@ -183,12 +208,17 @@ export class Crew {
   }
 
   /** Computes a map instead of the one before. */
-  compute(bands: Band[], take: (band: Band, part: MapPart) => void, finished: () => void): void {
+  compute(
+    bands: Band[],
+    take: (band: Band, part: MapPart) => void,
+    finished: (error?: string) => void,
+  ): void {
     this.generation += 1;
     this.queue = [...bands];
     this.left = bands.length;
     this.take = take;
     this.finished = finished;
+    this.error = undefined;
     this.hands.forEach((hand) => this.feed(hand));
   }
 
@@ -202,8 +232,9 @@ export class Crew {
       if (!answer.counts && !band.again) this.queue.unshift({ ...band, again: true });
       else {
         if (answer.counts) this.take(band, answer);
+        else this.error = answer.error;
         this.left -= 1;
-        if (this.left === 0) this.finished();
+        if (this.left === 0) this.finished(this.error);
       }
     }
     void this.feed(hand);

@@ -26,6 +26,12 @@ export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return element as T;
 }
 
+/** Puts a value into a control, unless it is being typed. */
+export function put(id: string, value: string | number): void {
+  const input = byId<HTMLInputElement | HTMLSelectElement>(id);
+  if (input !== document.activeElement || input.type !== "text") input.value = String(value);
+}
+
 /** Hands a file to the user. */
 export function save(name: string, content: Blob | string, type = "text/plain"): void {
   const blob = typeof content === "string" ? new Blob([content], { type }) : content;
@@ -79,9 +85,11 @@ function work(): void {
   for (const act of due) {
     try {
       act();
-    } finally {
-      due.delete(act);
+    } catch (error) {
+      // The others are drawn, and the next frame too.
+      reportError(error);
     }
+    due.delete(act);
   }
   frame.work = performance.now() - begun;
 }

@@ -43,6 +43,10 @@ export class Engine {
     return new Engine(exports);
   }
 
+  get memory(): WebAssembly.Memory {
+    return this.exports.memory;
+  }
+
   /** Answers a request that needs no scene. */
   ask(request: object): Answer {
     const bytes = this.encoder.encode(JSON.stringify(request));

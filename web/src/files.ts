@@ -47,10 +47,15 @@ export function courseTable(course: Course): string {
   return `${names.join(",")}\n${rows.join("\n")}\n`;
 }
 
-/** A map as a table: one row for each point. */
-export function mapTable(plane: Plane, names: [string, string], fields: string[]): string {
-  const { map, size, window } = plane.mapping.data;
-  if (!window) return "";
+/** The finished map as a table: one row for each point. */
+export function mapTable(
+  plane: Plane,
+  names: [string, string],
+  fields: string[],
+): string | undefined {
+  const { computed } = plane.mapping;
+  if (!computed) return undefined;
+  const { map, size, window } = computed;
   const [columns, rows] = size;
   const lines = [[...names, "count", ...fields.filter(Boolean)].join(",")];
   for (let row = 0; row < rows; row++) {

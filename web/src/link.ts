@@ -1,8 +1,10 @@
 // Links: the fragment of an address, with what differs from a preset.
 
+import { EXAMPLES } from "./examples";
 import { AXES } from "./models";
 import { PRESETS, presetOf } from "./presets";
 import { ballOf, DEFAULT, pin, STEEL, type State } from "./state";
+import { mostOf } from "./system";
 import type { Axis } from "./types";
 
 type Json = unknown;
@@ -50,9 +52,16 @@ function read(key: keyof State, text: string): Json {
 
 /** Whether a value has the form of the usual one. */
 function fits(value: Json, model: Json, key: string): boolean {
+  if (typeof value === "string" && FORMS[key] && !FORMS[key].test(value)) return false;
+  if (key === "example") return typeof value === "string" && Object.hasOwn(EXAMPLES, value);
   if (key === "tab") return value === "spheres" || value === "system";
   if (key === "axes") return typeof value === "string" && Object.hasOwn(AXES, value);
-  if (key === "set") return isRecord(value) && Object.values(value).every(isNumber);
+  if (key === "set")
+    return (
+      isRecord(value) &&
+      Object.entries(value).every(([name, it]) => NAME.test(name) && isNumber(it))
+    );
+  if (key === "most") return isNumber(value) && value === mostOf(value);
   if (key === "end") return value === null || isNumber(value);
   if (key === "pinned") return value === null || same(value, PINNED);
   if (key === "other") return value === null || same(value, ballOf(STEEL));
@@ -63,6 +72,16 @@ function fits(value: Json, model: Json, key: string): boolean {
   if (isRecord(model)) return same(value, model);
   return typeof value === typeof model && (typeof value !== "number" || isNumber(value));
 }
+
+const NAME = /^[\p{Alphabetic}_][\p{Alphabetic}\p{N}_]*$/u;
+/** The forms of words that lines to copy are made of: nobody else's commands may be in them. */
+const FORMS: Record<string, RegExp> = {
+  law: /^[\w/+.-]+$/,
+  across: NAME,
+  up: NAME,
+  quantity: /^(eps_t|count|time|lost|itinerary)$/,
+  colour: /^(count|itinerary|v[0-3])$/,
+};
 
 const PINNED = pin(DEFAULT);
 /** What older links leave out of a pinned contact. */

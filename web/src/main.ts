@@ -1,26 +1,26 @@
 // The page: what is where, and what changes what.
 
 import { isTraced, ofContact, ofImpact, ofSystem, ofWindow, type Lines } from "./commands";
-import { ContactView } from "./contact";
+import { ContactView, type First } from "./contact";
 import { axisNames, Controls, HINT, type Controlled } from "./controls";
-import { Crew, Hand, compiled } from "./crew";
+import { Crew, Hand } from "./crew";
 import { byId, make, onceAFrame } from "./dom";
 import { showLegend } from "./legend";
 import { decoded, encoded } from "./link";
 import { LINE, ofSpheres, ofText, quantitiesOf, type Places } from "./models";
+import { compiled } from "./module";
 import { write } from "./out";
 import { Plane } from "./plane";
 import type { Legend } from "./quantities";
-import { Store, type State } from "./state";
+import { INTERVALS, Store, taskOf, type State } from "./state";
 import { nameOf, SystemView } from "./system";
 import { whenSchemeChanges } from "./theme";
-import type { Answer, Atlas, Law } from "./types";
+import type { Answer, Atlas, Contact, Law } from "./types";
 
 const LETTERS = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n′", "o"];
 
 class Page implements Controlled {
   readonly store: Store;
-  preset: string;
   laws: Law[] = [];
   /** Whether a contact was shown. */
   private begun = false;
@@ -34,6 +34,7 @@ class Page implements Controlled {
   private toastTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly controls: Controls;
   private legend: [Legend, Atlas | undefined] | undefined;
+  private linesKey = "";
   private linesTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly show = onceAFrame(() => this.showNow());
 
@@ -41,20 +42,21 @@ class Page implements Controlled {
   constructor(
     module: Promise<WebAssembly.Module>,
     [hand, tracer]: readonly [Hand, Hand],
-    from: { state: State; preset: string },
+    first: First,
+    preset: string,
   ) {
-    this.store = new Store(from.state);
-    this.preset = from.preset;
+    this.store = new Store(first.state, preset);
     const cores = Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2));
     this.hand = hand;
     this.crew = new Crew(module, cores);
     this.contact = new ContactView(
       this.hand,
+      first,
       () => this.laws,
       () => {
         this.showLines();
-        // The first curves come before the first map, for which all processors work.
-        if (!this.begun) this.show();
+        // The first curves are shown before the first map is begun.
+        if (!this.begun) requestAnimationFrame(() => this.show());
         this.begun = true;
       },
     );
@@ -80,13 +82,22 @@ class Page implements Controlled {
       this.plane.redraw();
     });
     this.showNow();
-    void this.learn();
+    // The opening does not have what this needs.
+    module.then(
+      () => this.learn(),
+      () => {},
+    );
   }
 
   /** Asks for what does not change: laws, and places with closed forms. */
   private async learn(): Promise<void> {
-    const ask = async (request: object) =>
+    const once = async (request: object) =>
       (await this.hand.do<Answer>({ task: "ask", request })).answer;
+    // A worker may end meanwhile.
+    const ask = async (request: object) => {
+      const answer = await once(request);
+      return answer.error ? once(request) : answer;
+    };
     const [laws, about] = [await ask({ do: "laws" }), await ask({ do: "about" })];
     this.laws = laws as unknown as Law[];
     byId("version").textContent = `stickslip ${about.version}`;
@@ -116,8 +127,11 @@ class Page implements Controlled {
 
   /** Another state altogether, such as a preset's. */
   go(state: State, preset: string): void {
-    this.preset = preset;
-    this.store.change(state);
+    this.store.change(state, preset);
+  }
+
+  get preset(): string {
+    return this.store.preset;
   }
 
   showNow(): void {
@@ -130,6 +144,7 @@ class Page implements Controlled {
     else void this.system.show(state);
     if (model && (this.begun || state.tab === "system")) this.plane.show(model);
     this.showLegend();
+    this.showLines();
     clearTimeout(this.hashTimer);
     this.hashTimer = setTimeout(() => {
       const hash = this.fragment();
@@ -185,16 +200,22 @@ class Page implements Controlled {
         ),
         make("pre", { tabindex: 0, "aria-label": name }, words),
       );
-    const nodes = this.lines().flatMap(([title, { shell, python }]) => [
+    const lines = this.lines();
+    const key = JSON.stringify(lines);
+    // A button that has the focus keeps it.
+    if (key === this.linesKey) return;
+    this.linesKey = key;
+    const nodes = lines.flatMap(([title, { shell, python }]) => [
       make("h3", {}, title),
       ...(shell ? [block(`${title}, command line`, shell)] : []),
       block(`${title}, Python`, python),
     ]);
     byId("lines").replaceChildren(...nodes);
     const { document: found } = this.contact.contact ?? {};
-    if (found && this.store.state.tab === "spheres")
-      byId("spoken").textContent =
-        `${found.switch_count} switches, tangential restitution ${found.eps_t.toFixed(4)}`;
+    if (!found || this.store.state.tab !== "spheres") return;
+    const { switch_count, eps_t } = found;
+    const words = `${switch_count} switches, tangential restitution ${eps_t.toFixed(4)}`;
+    if (byId("spoken").textContent !== words) byId("spoken").textContent = words;
   }
 
   async copy(words: string, what: string): Promise<void> {
@@ -231,7 +252,7 @@ class Page implements Controlled {
   }
 
   /** Writes a file by the name of its button. */
-  write(what: string): Promise<void> {
+  async write(what: string): Promise<void> {
     const {
       store: { state },
       plane,
@@ -245,7 +266,8 @@ class Page implements Controlled {
       : quantitiesOf(system)
           .slice(2)
           .map((it) => it.name);
-    return write(what, { state, plane, contact, system, axes, fields });
+    const refusal = await write(what, { state, plane, contact, system, axes, fields });
+    if (refusal) this.say(refusal);
   }
 
   /** What tests read. */
@@ -266,14 +288,29 @@ function ownView(): string {
   return document.querySelector<HTMLMetaElement>("meta[name=stickslip-view]")?.content ?? "";
 }
 
-async function start(): Promise<void> {
+/** Starts what computes, before the page is there: the first contact is asked for. */
+async function open() {
+  const { state, preset } = decoded(location.hash || ownView());
+  let ready = (_: Promise<WebAssembly.Module>): void => {};
+  const module = new Promise<WebAssembly.Module>((resolve) => (ready = resolve));
+  const hands = [new Hand(module), new Hand(module)] as const;
+  hands[0].warm();
+  const asked = state.tab === "spheres";
+  const task = taskOf(state, INTERVALS.screen);
+  const found = asked ? hands[0].do<Answer & Contact>(task, 5000) : undefined;
+  ready(compiled(hands, asked ? hands[0].tried : Promise.resolve()));
+  module.catch(() => {});
+  return { module, hands, first: { state, found }, preset };
+}
+
+const opened = open();
+opened.catch(() => {});
+
+/** Shows the page, whose controls are there. */
+async function show(): Promise<void> {
   try {
-    // Controls are drawn while workers unpack the module.
-    let ready = (_: Promise<WebAssembly.Module>): void => {};
-    const module = new Promise<WebAssembly.Module>((resolve) => (ready = resolve));
-    const hands = [new Hand(module), new Hand(module)] as const;
-    ready(compiled([...hands]));
-    const page = new Page(module, hands, decoded(location.hash || ownView()));
+    const { module, hands, first, preset } = await opened;
+    const page = new Page(module, hands, first, preset);
     (globalThis as Record<string, unknown>).explorer = page.inside;
     await module;
     document.body.classList.add("ready");
@@ -283,4 +320,4 @@ async function start(): Promise<void> {
   }
 }
 
-void start();
+(globalThis as Record<string, unknown>).explore = show;

@@ -3,7 +3,7 @@
 import type { Band, Crew } from "./crew";
 import { colour, legend, type Legend, type Shown } from "./quantities";
 import { part } from "./scale";
-import { STRIDE, type Axis, type MapPart, type SceneRequest } from "./types";
+import { NO_COUNT, STRIDE, type Axis, type MapPart, type SceneRequest } from "./types";
 
 /** Rows of a band are so many that a band takes some ten milliseconds. */
 const POINTS_OF_A_BAND = 6_000;
@@ -16,9 +16,12 @@ export class Mapping {
   private window: [Axis, Axis] | undefined;
   private map: MapPart = empty(0);
   private size: [number, number] = [0, 0];
+  /** The size of its finest points in those of the picture. */
+  private block = 1;
   /** What is computed now, and shown once all of its coarse points are there. */
   private next:
-    { map: MapPart; size: [number, number]; window: [Axis, Axis]; coarse: number } | undefined;
+    | { map: MapPart; size: [number, number]; window: [Axis, Axis]; block: number; coarse: number }
+    | undefined;
   legend: Legend | undefined;
   private wanted: Shown | undefined;
   private edges = false;
@@ -26,6 +29,8 @@ export class Mapping {
   begun = 0;
   took = 0;
   ready = false;
+  /** Why there is no whole map. */
+  refusal: string | undefined;
 
   constructor(
     private readonly crew: Crew,
@@ -40,14 +45,20 @@ export class Mapping {
       map: empty(width * height),
       size: [width, height],
       window: [scene.x, scene.y],
+      block: blocks.at(-1) ?? 1,
       coarse,
     };
+    this.refusal = undefined;
     this.begun = performance.now();
     this.ready = false;
     this.crew.compute(
       bands,
       (band, found) => this.take(band, found),
-      () => {
+      (error) => {
+        this.refusal = error;
+        // The picture of another map would be taken for this one.
+        if (this.next) this.forget();
+        this.next = undefined;
         this.took = performance.now() - this.begun;
         this.ready = true;
         this.paint(this.wanted);
@@ -64,7 +75,8 @@ export class Mapping {
     if (into) {
       into.coarse -= 1;
       if (into.coarse > 0) return;
-      [this.map, this.size, this.window, this.next] = [into.map, into.size, into.window, undefined];
+      [this.map, this.size, this.window] = [into.map, into.size, into.window];
+      [this.block, this.next] = [into.block, undefined];
       this.paint(this.wanted);
     } else {
       this.paintRows(task.first * block, Math.min(height, task.end * block));
@@ -135,26 +147,54 @@ export class Mapping {
     return [left, 1 - top, right - left, top - bottom];
   }
 
-  /** The index of the point at a place, in parts of the shown window from the left and the top. */
+  /** The index of the point with these values, unless the picture is of an earlier map. */
   at(x: number, y: number): number | undefined {
+    if (!this.window || this.next) return undefined;
     const [width, height] = this.size;
-    const [column, row] = [Math.floor(x * width), Math.floor(y * height)];
+    const [column, row] = [
+      Math.floor(part(this.window[0], x) * width),
+      Math.floor((1 - part(this.window[1], y)) * height),
+    ];
     const inside = column >= 0 && column < width && row >= 0 && row < height;
     return inside ? row * width + column : undefined;
   }
 
-  /** The points of the map, for a file. */
-  get data(): { map: MapPart; size: [number, number]; window: [Axis, Axis] | undefined } {
-    return { map: this.map, size: this.size, window: this.window };
+  /** The points of the map. */
+  get data(): { map: MapPart; size: [number, number] } {
+    return { map: this.map, size: this.size };
+  }
+
+  /** What was computed of the finished map, in columns and rows from the top: where it is coarser
+   * than the picture, each point once. */
+  get computed(): { map: MapPart; size: [number, number]; window: [Axis, Axis] } | undefined {
+    const { map, block, window } = this;
+    if (!window || !this.ready || this.refusal) return undefined;
+    const [width, height] = this.size;
+    const [columns, rows] = [Math.ceil(width / block), Math.ceil(height / block)];
+    const found = empty(columns * rows);
+    for (let index = 0; index < columns * rows; index++) {
+      const [column, row] = [index % columns, Math.floor(index / columns)];
+      copy(map, block * (row * width + column), found, index);
+    }
+    return { map: found, size: [columns, rows], window };
   }
 }
 
+/** A map without results. */
 function empty(points: number): MapPart {
   return {
-    values: new Float32Array(points * STRIDE),
-    counts: new Uint16Array(points),
+    values: new Float32Array(points * STRIDE).fill(NaN),
+    counts: new Uint16Array(points).fill(NO_COUNT),
     codes: new Uint32Array(points),
   };
+}
+
+function copy(from: MapPart, index: number, into: MapPart, to: number): void {
+  into.counts[to] = from.counts[index] as number;
+  into.codes[to] = from.codes[index] as number;
+  for (let place = 0; place < STRIDE; place++) {
+    into.values[to * STRIDE + place] = from.values[index * STRIDE + place] as number;
+  }
 }
 
 function bandsOf(scene: SceneRequest, width: number, height: number, block: number): Band[] {
@@ -180,13 +220,7 @@ function spread(
   for (let row = first * block; row < Math.min(height, end * block); row++) {
     const begin = (Math.floor(row / block) - first) * columns;
     for (let column = 0; column < width; column++) {
-      const from = begin + Math.floor(column / block);
-      const to = row * width + column;
-      into.counts[to] = found.counts[from] as number;
-      into.codes[to] = found.codes[from] as number;
-      for (let place = 0; place < STRIDE; place++) {
-        into.values[to * STRIDE + place] = found.values[from * STRIDE + place] as number;
-      }
+      copy(found, begin + Math.floor(column / block), into, row * width + column);
     }
   }
 }

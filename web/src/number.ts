@@ -50,10 +50,9 @@ export function minus(text: string): string {
 
 /** The number that a user types, or undefined. Commas and fractions such as 2/7 are understood. */
 export function typed(text: string): number | undefined {
-  const parts = text.trim().replace("−", "-").replace(",", ".").split("/").map(Number);
-  if (text.trim() === "" || parts.length > 2 || parts.some((part) => !Number.isFinite(part))) {
-    return undefined;
-  }
+  const words = text.replaceAll("−", "-").replaceAll(",", ".").split("/");
+  const parts = words.map((word) => (word.trim() === "" ? NaN : Number(word)));
+  if (parts.length > 2 || parts.some((part) => !Number.isFinite(part))) return undefined;
   const value = parts.length === 2 ? (parts[0] ?? 0) / (parts[1] ?? 1) : parts[0];
   return value !== undefined && Number.isFinite(value) ? value : undefined;
 }

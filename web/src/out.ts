@@ -20,43 +20,52 @@ export interface Sources {
   fields: string[];
 }
 
-/** Writes a file, if there is something to write. */
-export async function write(what: string, from: Sources): Promise<void> {
+/** Writes a file, if there is something to write; returns why not. */
+export async function write(what: string, from: Sources): Promise<string | undefined> {
   const { plane } = from;
   const draw = (pen: Pen, width: number, height: number) =>
     plane.drawWith(pen, width, height);
   switch (what) {
     case "plane-svg":
-      return save("plane.svg", svg(...plane.extent, draw), "image/svg+xml");
+      return saved("plane.svg", svg(...plane.extent, draw), "image/svg+xml");
     case "plane-png":
-      return save("plane.png", await png(...plane.extent, draw));
+      return saved("plane.png", await png(...plane.extent, draw));
     case "plane-csv":
-      return save("map.csv", mapTable(plane, from.axes, from.fields), "text/csv");
+      return saved("map.csv", mapTable(plane, from.axes, from.fields), "text/csv");
     case "plane-json": {
-      const atlas = { axes: from.axes, ...plane.atlas };
-      return save("atlas.json", JSON.stringify(atlas, null, 1), "application/json");
+      const atlas = plane.traced && { axes: from.axes, ...plane.traced };
+      return saved("atlas.json", atlas && JSON.stringify(atlas, null, 1), "application/json");
     }
     case "text":
-      return save(`${nameOf(from.state)}.slip`, textOf(from.state));
+      return saved(`${nameOf(from.state)}.slip`, textOf(from.state));
     case "course-csv":
-    case "events-csv": {
-      const text = await tableOf(what, from);
-      return text === undefined
-        ? undefined
-        : save(`${what.replace("-csv", "")}.csv`, text, "text/csv");
-    }
+    case "events-csv":
+      return saved(`${what.replace("-csv", "")}.csv`, await tableOf(what, from), "text/csv");
   }
   const spheres = from.state.tab === "spheres";
   const name = spheres ? "contact" : nameOf(from.state);
   const chart = spheres ? from.contact.chart : from.system.chart;
   const found = spheres ? from.contact.contact?.document : from.system.run;
-  if (what === "course-json" && found) {
-    save(`${name}.json`, JSON.stringify(found, null, 2), "application/json");
-  } else if (what === "course-svg" && chart) {
-    save(`${name}.svg`, svg(...CHART_SIZE, drawing(chart)), "image/svg+xml");
-  } else if (what === "course-png" && chart) {
-    save(`${name}.png`, await png(...CHART_SIZE, drawing(chart)));
-  }
+  if (what === "course-json")
+    return saved(`${name}.json`, found && JSON.stringify(found, null, 2), "application/json");
+  if (what === "course-svg")
+    return saved(
+      `${name}.svg`,
+      chart && svg(...CHART_SIZE, drawing(chart)),
+      "image/svg+xml",
+    );
+  return saved(`${name}.png`, chart && (await png(...CHART_SIZE, drawing(chart))));
+}
+
+/** Hands a file to the user, if there is its content; returns why not. */
+function saved(
+  name: string,
+  content: Blob | string | undefined,
+  type?: string,
+): string | undefined {
+  if (content === undefined) return `${name}: not computed`;
+  save(name, content, type);
+  return undefined;
 }
 
 async function tableOf(

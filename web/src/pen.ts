@@ -217,8 +217,12 @@ function near(value: number): string {
   return String(Math.round(value * 100) / 100);
 }
 
+/** A path through the points that are numbers, as a canvas draws it. */
 function course(path: Path): string {
-  return path.map(([x, y], index) => `${index ? "L" : "M"}${near(x)} ${near(y)}`).join("");
+  return path
+    .filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y))
+    .map(([x, y], index) => `${index ? "L" : "M"}${near(x)} ${near(y)}`)
+    .join("");
 }
 
 function strokes(stroke?: Stroke): string {

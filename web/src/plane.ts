@@ -8,7 +8,7 @@ import { Mapping } from "./mapping";
 import { rounded, short } from "./number";
 import { CanvasPen, type Path, type Pen } from "./pen";
 import { words, type Shown } from "./quantities";
-import { part, stretched, value } from "./scale";
+import { digitsOf, part, pointAt, spanOf, stretched, value } from "./scale";
 import { theme } from "./theme";
 import type { Answer, Atlas, Axis, Region, SceneRequest } from "./types";
 
@@ -48,6 +48,8 @@ export interface PlaneEvents {
 
 /** The regions and boundaries of an atlas in pixels. */
 interface Paths {
+  of: Atlas | undefined;
+  /** The window and its size. */
   key: string;
   regions: Path2D[];
   lines: Path2D[];
@@ -70,10 +72,12 @@ export class Plane {
   found: Float64Array[] = [];
   private atlasKey = "";
   private atlasNote = "";
+  /** The scene of the atlas. */
+  private tracedKey = "";
   private model: PlaneModel | undefined;
   private hovered: [number, number] | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private paths: Paths = { key: "", regions: [], lines: [] };
+  private paths: Paths = { of: undefined, key: "", regions: [], lines: [] };
   private readonly draw = onceAFrame(() => this.drawNow());
   /** What is drawn again only when it changes, below what follows the pointer. */
   private readonly ground = byId<HTMLCanvasElement>("map");
@@ -168,6 +172,7 @@ export class Plane {
       this.atlasNote = answer.error === "cancelled" ? "" : `no boundaries: ${answer.error}`;
     } else {
       this.atlas = answer;
+      this.tracedKey = key;
       const doubts = answer.regions.filter((region) => region.doubtful).length;
       const doubt = doubts ? `, ${doubts} in doubt` : "";
       const { length } = answer.regions;
@@ -190,9 +195,9 @@ export class Plane {
   private report(): void {
     const { model, mapping } = this;
     const [width, height] = mapping.data.size;
-    const map = mapping.ready
-      ? `map ${width} × ${height} in ${Math.round(mapping.took)} ms`
-      : "computing the map …";
+    const took = `map ${width} × ${height} in ${Math.round(mapping.took)} ms`;
+    const done = mapping.refusal ? `no whole map: ${mapping.refusal}` : took;
+    const map = mapping.ready ? done : "computing the map …";
     this.events.status(model?.boundaries ? `${map}; ${this.atlasNote}` : map);
   }
 
@@ -200,10 +205,9 @@ export class Plane {
     const { model } = this;
     if (!model) return [1, 1];
     const [width, height] = this.size;
-    const inside = (it: number) => Math.max(0.0005, Math.min(0.9995, it));
     return [
-      rounded(value(model.scene.x, inside((x - LEFT) / width))),
-      rounded(value(model.scene.y, inside(1 - (y - TOP) / height))),
+      pointAt(model.scene.x, (x - LEFT) / width),
+      pointAt(model.scene.y, 1 - (y - TOP) / height),
     ];
   }
 
@@ -248,12 +252,10 @@ export class Plane {
     const least = axis.log
       ? Math.max(1e-6, this.model?.least ?? 1e-6)
       : (this.model?.least ?? -Infinity);
-    const span = axis.log
-      ? Math.log(axis.high / axis.low)
-      : (axis.high - axis.low) / Math.max(1e-300, Math.abs(axis.high));
+    const span = spanOf(axis);
     if (!(span > 2e-6) || !(axis.high < 1e9) || !Number.isFinite(axis.low)) return before;
     if (axis.log && span > 25) return before;
-    const digits = Math.max(4, Math.min(12, 4 - Math.floor(Math.log10(Math.min(1, span)))));
+    const digits = digitsOf(span, 4);
     const low = rounded(Math.max(least, axis.low), digits);
     const high = rounded(axis.high, digits);
     return low < high ? { ...axis, low, high } : before;
@@ -264,10 +266,9 @@ export class Plane {
     if (!model) return;
     const by = fine ? 0.001 : 0.01;
     const at = [part(model.scene.x, model.point[0]), part(model.scene.y, model.point[1])] as const;
-    const clamped = (it: number) => Math.max(0.0005, Math.min(0.9995, it));
     this.events.point([
-      rounded(value(model.scene.x, clamped(at[0] + dx * by))),
-      rounded(value(model.scene.y, clamped(at[1] + dy * by))),
+      pointAt(model.scene.x, at[0] + dx * by),
+      pointAt(model.scene.y, at[1] + dy * by),
     ]);
   }
 
@@ -302,9 +303,9 @@ export class Plane {
   }
 
   private pathsOf(atlas: Atlas): Paths {
-    const key = `${this.computed}${this.atlasKey}`;
-    if (this.paths.key === key && this.paths.regions.length === atlas.regions.length)
-      return this.paths;
+    const { x, y } = this.model?.scene ?? {};
+    const key = JSON.stringify([x, y, this.size]);
+    if (this.paths.of === atlas && this.paths.key === key) return this.paths;
     const lines = atlas.boundaries.map(({ points }) => {
       const path = new Path2D();
       for (const point of points) path.lineTo(...this.toPixels(point));
@@ -320,7 +321,7 @@ export class Plane {
       }
       return path;
     });
-    this.paths = { key, regions, lines };
+    this.paths = { of: atlas, key, regions, lines };
     return this.paths;
   }
 
@@ -342,7 +343,10 @@ export class Plane {
     const place = `${one.symbol} ${short(across)}, ${other.symbol} ${short(up)}`;
     const region = this.regionAt(x, y);
     const [width, height] = this.size;
-    const index = mapping.at((x - LEFT) / width, (y - TOP) / height);
+    const index = mapping.at(
+      value(model.scene.x, (x - LEFT) / width),
+      value(model.scene.y, 1 - (y - TOP) / height),
+    );
     const { map } = mapping.data;
     const own =
       index !== undefined && mapping.legend ? words(mapping.legend, map, index) : undefined;
@@ -476,6 +480,12 @@ export class Plane {
     pen.disc(x, y, 9, "rgba(255,255,255,0.35)", { colour: "#fff", width: 3.5 });
     pen.disc(x, y, 9, "rgba(0,0,0,0)", { colour: "#111", width: 1.6 });
     pen.disc(x, y, 2.2, "#111");
+  }
+
+  /** The atlas of the present window, if it is traced. */
+  get traced(): Atlas | undefined {
+    const { model, atlas } = this;
+    return model && this.tracedKey === JSON.stringify(model.scene) ? atlas : undefined;
   }
 
   /** The size of the canvas, for files. */

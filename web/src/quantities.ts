@@ -73,8 +73,8 @@ export function legend(shown: Shown, map: MapPart): Legend {
   let [low, high] = [Infinity, -Infinity];
   for (let index = shown.place; index < map.values.length; index += STRIDE) {
     const value = map.values[index] as number;
-    if (value < low) low = value;
-    if (value > high) high = value;
+    if (value < low && value > -Infinity) low = value;
+    if (value > high && value < Infinity) high = value;
   }
   if (low > high) [low, high] = [0, 1];
   return { shown, range: low === high ? [low - 0.5, high + 0.5] : [low, high], counts: [], by: 1 };

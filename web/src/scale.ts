@@ -1,6 +1,6 @@
 // Scales of axes, linear and logarithmic, and their ticks.
 
-import { raised, short } from "./number";
+import { raised, rounded, short } from "./number";
 
 /** An interval of values, mapped to parts between 0 and 1. */
 export interface Scale {
@@ -30,6 +30,22 @@ export function stretched(scale: Scale, from: number, to: number): Scale {
   return { ...scale, low: value(scale, from), high: value(scale, to) };
 }
 
+/** The span of a scale in units of its upper end. */
+export function spanOf({ low, high, log }: Scale): number {
+  return log ? Math.log(high / low) : (high - low) / Math.max(1e-300, Math.abs(high));
+}
+
+/** So many digits tell the places of a span apart, and usually so many are enough. */
+export function digitsOf(span: number, usual: number): number {
+  return Math.max(usual, Math.min(12, 4 - Math.floor(Math.log10(Math.min(1, span)))));
+}
+
+/** The value at a part of a scale, or beside its nearer end, with six digits where they do. */
+export function pointAt(axis: Scale, at: number): number {
+  const inside = Math.max(0.0005, Math.min(0.9995, at));
+  return rounded(value(axis, inside), digitsOf(spanOf(axis), 6));
+}
+
 /** About `count` ticks. */
 export function ticks(scale: Scale, count: number): Tick[] {
   return scale.log && scale.high / scale.low > 5 ? logarithmic(scale, count) : even(scale, count);
@@ -47,7 +63,10 @@ function even(scale: Scale, count: number): Tick[] {
   const { low, high } = scale;
   const by = step(high - low, count);
   const found: Tick[] = [];
-  for (let index = Math.ceil(low / by - 1e-9); index * by <= high + by * 1e-9; index++) {
+  const first = Math.ceil(low / by - 1e-9);
+  // Beyond, twelve digits do not tell ticks apart, and at last the next integer is the same one.
+  if (Math.abs(first) > 1e11) return found;
+  for (let index = first; index * by <= high + by * 1e-9; index++) {
     const value = Number((index * by).toPrecision(12));
     found.push({ value, label: short(value, digits(low, high, by)) });
   }

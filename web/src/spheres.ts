@@ -59,6 +59,13 @@ export class Spheres {
     this.draw();
   }
 
+  /** Shows no contact. */
+  clear(): void {
+    this.contact = this.course = undefined;
+    this.drawn = "";
+    fit(this.canvas);
+  }
+
   /** The speeds of shift and turn, where the surfaces slide by w: only α of a change is shift. */
   private speeds(w: number): [number, number] {
     const before = this.contact?.document.parameters.psi ?? 0;

@@ -1,6 +1,6 @@
 // What the page shows: one object, whose every field can be in a link.
 
-import type { SceneRequest, Axis } from "./types";
+import type { SceneRequest, Axis, ContactTask } from "./types";
 
 export type Tab = "spheres" | "system";
 export type Axes = "kappa-psi" | "kappa-ratio" | "axis-ratio" | "velocities";
@@ -148,26 +148,48 @@ export function scene(of: Scenery, x: Axis, y: Axis): SceneRequest {
     : { ...common, law, damping, tangential_damping: tangential, friction, pull_off };
 }
 
+/** So many intervals a course has at least, on the screen and in a file. */
+export const INTERVALS = { screen: 300, file: 1000 };
+const ANY = { low: 1, high: 2, log: false };
+
+/** A contact and its course as a task, which is the same in any window. */
+export function taskOf(of: Pinned, intervals: number): ContactTask {
+  const [x, y] = of.point;
+  return { task: "contact", scene: scene(of, ANY, ANY), x, y, intervals };
+}
+
+/** A state, and the preset that it comes from. */
+interface Shown {
+  state: State;
+  preset: string;
+}
+
 /** Listens to changes, and remembers states to go back to. */
 export class Store {
   private listeners: ((state: State, before: State) => void)[] = [];
-  private past: State[] = [];
-  private future: State[] = [];
+  private past: Shown[] = [];
+  private future: Shown[] = [];
   private changed = 0;
 
-  constructor(public state: State) {}
+  constructor(
+    public state: State,
+    public preset: string,
+  ) {}
 
   listen(listener: (state: State, before: State) => void): void {
     this.listeners.push(listener);
   }
 
-  /** Changes some fields. Changes within half a second are one step of undoing. */
-  change(patch: Partial<State>): void {
+  /** Changes some fields, or to another preset. Changes within half a second are one step of
+   * undoing. */
+  change(patch: Partial<State>, preset = this.preset): void {
     const now = performance.now();
-    if (now - this.changed > 500) this.past = [...this.past.slice(-100), this.state];
+    const { state } = this;
+    if (now - this.changed > 500)
+      this.past = [...this.past.slice(-100), { state, preset: this.preset }];
     this.changed = now;
     this.future = [];
-    this.become({ ...this.state, ...patch });
+    this.become({ state: { ...state, ...patch }, preset });
   }
 
   undo(): void {
@@ -178,17 +200,17 @@ export class Store {
     this.step(this.future, this.past);
   }
 
-  private step(from: State[], to: State[]): void {
-    const state = from.pop();
-    if (!state) return;
-    to.push(this.state);
+  private step(from: Shown[], to: Shown[]): void {
+    const shown = from.pop();
+    if (!shown) return;
+    to.push({ state: this.state, preset: this.preset });
     this.changed = 0;
-    this.become(state);
+    this.become(shown);
   }
 
-  private become(state: State): void {
+  private become({ state, preset }: Shown): void {
     const before = this.state;
-    this.state = state;
+    [this.state, this.preset] = [state, preset];
     this.listeners.forEach((listener) => listener(state, before));
   }
 }

@@ -2,7 +2,7 @@
 
 import { described, drawChart, timeAt, type Chart, type Panel } from "./chart";
 import type { Hand } from "./crew";
-import { byId, fit, make, onceAFrame, sizeOf } from "./dom";
+import { byId, fit, make, onceAFrame, put, sizeOf } from "./dom";
 import { EXAMPLES } from "./examples";
 import { short, typed } from "./number";
 import { CanvasPen } from "./pen";
@@ -51,9 +51,19 @@ export function textOf(state: State): string {
   return state.text ?? EXAMPLES[state.example]?.text ?? "";
 }
 
+/** The value that a parameter is set to. An object has other names too, such as `constructor`. */
+function given(set: Record<string, number>, name: string): number | undefined {
+  return Object.hasOwn(set, name) ? set[name] : undefined;
+}
+
 /** The name of the file of the system of a state. */
 export function nameOf(state: State): string {
   return state.text === null ? state.example : "system";
+}
+
+/** A number of events up to which runs can be told apart. */
+export function mostOf(value: number): number {
+  return Math.max(1, Math.min(200, Math.round(value)));
 }
 
 export class SystemView {
@@ -79,14 +89,22 @@ export class SystemView {
     const choice = byId<HTMLSelectElement>("example");
     choice.append(...Object.keys(EXAMPLES).map((name) => make("option", { value: name }, name)));
     choice.onchange = () => this.choose(choice.value);
+    const take = () => {
+      clearTimeout(this.timer);
+      this.timer = undefined;
+      store.change({ text: this.editor.value });
+    };
     this.editor.addEventListener("input", () => {
       clearTimeout(this.timer);
       this.drawGutter();
-      this.timer = setTimeout(() => store.change({ text: this.editor.value }), 250);
+      this.timer = setTimeout(take, 250);
     });
+    // What is pressed next is meant for the text as it is.
+    this.editor.addEventListener("blur", () => this.timer !== undefined && take());
     this.editor.addEventListener("scroll", () => (this.gutter.scrollTop = this.editor.scrollTop));
     byId("tidy").onclick = () => {
-      if (this.parsed) store.change({ text: this.parsed.text });
+      if (this.parsed && this.shownText === textOf(store.state))
+        store.change({ text: this.parsed.text });
     };
     this.canvas.addEventListener("pointermove", (event) => {
       const box = this.canvas.getBoundingClientRect();
@@ -105,15 +123,16 @@ export class SystemView {
       byId<HTMLSelectElement>(id).onchange = (event) =>
         this.axis(key, (event.target as HTMLSelectElement).value);
     }
-    const number = (id: string, change: (value: number | undefined) => void) => {
-      byId<HTMLInputElement>(id).onchange = (event) =>
-        change(typed((event.target as HTMLInputElement).value));
+    const field = (id: "most" | "end", patch: (value: number | undefined) => Partial<State>) => {
+      const input = byId<HTMLInputElement>(id);
+      input.onchange = () => {
+        const value = typed(input.value);
+        if (value !== undefined || input.value.trim() === "") store.change(patch(value));
+        input.value = String(store.state[id] ?? "");
+      };
     };
-    number(
-      "most",
-      (value) => value && store.change({ most: Math.max(1, Math.min(200, Math.round(value))) }),
-    );
-    number("end", (value) => store.change({ end: value ?? null }));
+    field("most", (value) => (value === undefined ? {} : { most: mostOf(value) }));
+    field("end", (value) => ({ end: value ?? null }));
   }
 
   /** Shows an example. */
@@ -170,7 +189,7 @@ export class SystemView {
   /** The value of a parameter. */
   value(name: string): number {
     const parameter = this.parsed?.parameters.find((it) => it.name === name);
-    return this.store.state.set[name] ?? parameter?.value ?? 1;
+    return given(this.store.state.set, name) ?? parameter?.value ?? 1;
   }
 
   /** The plane of the system, if it has one. */
@@ -189,9 +208,9 @@ export class SystemView {
     const text = textOf(state);
     if (document.activeElement !== this.editor && this.editor.value !== text)
       this.editor.value = text;
-    byId<HTMLSelectElement>("example").value = state.example;
-    byId<HTMLInputElement>("most").value = String(state.most);
-    byId<HTMLInputElement>("end").value = state.end === null ? "" : String(state.end);
+    put("example", state.example);
+    put("most", state.most);
+    put("end", state.end ?? "");
     if (text !== this.shownText) {
       this.shownText = text;
       const { answer } = await this.hand.do<Answer & Parsed>(
@@ -199,20 +218,19 @@ export class SystemView {
         5000,
       );
       if (text !== this.shownText) return;
-      this.take(answer);
+      this.read(answer);
     }
     this.drawControls(this.store.state);
-    await this.compute(this.store.state, text);
+    if (!this.computing) await this.compute();
   }
 
-  private take(answer: Answer & Parsed): void {
+  private read(answer: Answer & Parsed): void {
     this.errorLine = answer.error ? (answer.line ?? 1) : 0;
     this.parsed = answer.error ? undefined : answer;
     this.editor.setAttribute("aria-invalid", String(answer.error !== undefined));
     this.problem.hidden = answer.error === undefined;
-    this.problem.textContent = answer.error
-      ? `line ${answer.line}, column ${answer.column}: ${answer.error}`
-      : "";
+    const place = answer.line ? `line ${answer.line}, column ${answer.column}: ` : "";
+    this.problem.textContent = answer.error ? `${place}${answer.error}` : "";
     this.drawGutter();
     if (!this.parsed) return;
     const { state } = this.store;
@@ -241,14 +259,24 @@ export class SystemView {
     this.changed();
   }
 
-  private async compute(state: State, text: string): Promise<void> {
-    if (!this.parsed) return;
+  private computing = false;
+
+  /** Computes the run of the present state. While it does, only the last of other states waits. */
+  private async compute(): Promise<void> {
+    const { state } = this.store;
+    const text = this.shownText;
     const key = JSON.stringify([text, state.set, state.end]);
-    if (key === this.runKey) return;
+    if (!this.parsed || key === this.runKey) return;
     this.runKey = key;
+    this.computing = true;
     const request = { do: "run", text, set: state.set, end: state.end };
     const { answer } = await this.hand.do<Answer & Run>({ task: "ask", request }, 8000);
-    if (key !== this.runKey) return;
+    this.computing = false;
+    if (text === this.shownText) this.take(answer);
+    await this.compute();
+  }
+
+  private take(answer: Answer & Run): void {
     this.run = answer.error ? undefined : answer;
     this.chart = this.run && this.chartOf(this.run);
     const result = byId("result");
@@ -294,7 +322,7 @@ export class SystemView {
     }
     for (const { name } of parameters) {
       for (const input of box.querySelectorAll<HTMLInputElement>(`[data-parameter="${name}"]`)) {
-        const value = String(state.set[name] ?? parameters.find((it) => it.name === name)?.value);
+        const value = String(this.value(name));
         if (input !== document.activeElement || input.type === "range") input.value = value;
       }
     }
@@ -303,9 +331,11 @@ export class SystemView {
   private slider({ name }: Parameter): HTMLElement {
     const [low, high] = this.rangeOf(name);
     const change = (event: Event) => {
-      const value = typed((event.target as HTMLInputElement).value);
+      const input = event.target as HTMLInputElement;
+      const value = typed(input.value);
       if (value !== undefined)
         this.store.change({ set: { ...this.store.state.set, [name]: value } });
+      if (input.type !== "range") input.value = String(this.value(name));
     };
     const step = (high - low) / 500;
     return make(

@@ -29,8 +29,16 @@ export const NO_COUNT = 65535;
 /** What a worker does. */
 export type Task =
   | { task: "ask"; request: object; scene?: SceneRequest }
-  | { task: "contact"; scene: SceneRequest; x: number; y: number; intervals: number }
+  | ContactTask
   | { task: "map"; scene: SceneRequest; columns: number; rows: number; first: number; end: number };
+
+export interface ContactTask {
+  task: "contact";
+  scene: SceneRequest;
+  x: number;
+  y: number;
+  intervals: number;
+}
 
 export interface Boundary {
   kind: string;

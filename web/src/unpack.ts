@@ -1,8 +1,8 @@
-// The module of the page is a text. What unpacks it is a module too, examples/unpack.rs in
-// crates/explorer.
+// The module of the page is texts. What unpacks them, but for the first, is a module too,
+// examples/unpack.rs in crates/explorer.
 
-/** What a part of the module is made from: texts in base64, the first of which the browser can
- * unpack by itself, and its size in bytes. */
+/** What a part of the module is made from: texts, the first of which the browser can unpack by
+ * itself, and its size in bytes. */
 export interface Packed {
   unpacker: string;
   packed: string;
@@ -16,9 +16,7 @@ interface Exports {
 }
 
 export async function unpack({ unpacker, packed, size }: Packed): Promise<Uint8Array> {
-  const zipped = new Blob([bytes(unpacker)]).stream();
-  const code = new Response(zipped.pipeThrough(new DecompressionStream("gzip")));
-  const { instance } = await WebAssembly.instantiate(await code.arrayBuffer());
+  const { instance } = await WebAssembly.instantiate(await unzipped(unpacker));
   const exports = instance.exports as unknown as Exports;
   const file = bytes(packed);
   const input = exports.input(file.length);
@@ -28,9 +26,31 @@ export async function unpack({ unpacker, packed, size }: Packed): Promise<Uint8A
   return new Uint8Array(exports.memory.buffer, address, size).slice();
 }
 
-function bytes(base64: string): Uint8Array<ArrayBuffer> {
-  const text = atob(base64);
-  const found = new Uint8Array(text.length);
-  for (let index = 0; index < text.length; index++) found[index] = text.charCodeAt(index);
+/** The bytes of a text that the browser can unpack. */
+export async function unzipped(text: string): Promise<Uint8Array<ArrayBuffer>> {
+  const zipped = new Blob([bytes(text)]).stream();
+  const whole = new Response(zipped.pipeThrough(new DecompressionStream("gzip")));
+  return new Uint8Array(await whole.arrayBuffer());
+}
+
+/** The values of the characters that a text of bytes has: those from ! to ~ but for ", & and <. */
+const VALUES = new Int16Array(128).fill(-1);
+for (let code = 33, value = 0; code < 127; code++)
+  if (!['"', "&", "<"].includes(String.fromCharCode(code))) VALUES[code] = value++;
+
+/** The bytes of a text: each two characters are 13 bits, and one that is left is up to 6. */
+function bytes(text: string): Uint8Array<ArrayBuffer> {
+  const { length } = text;
+  const found = new Uint8Array((13 * (length >> 1) + 6 * (length & 1)) >> 3);
+  let [held, bits, at] = [0, 0, 0];
+  for (let index = 0; index < length; index += 2) {
+    const alone = index + 1 === length;
+    const low = VALUES[text.charCodeAt(index)]!;
+    const high = alone ? 0 : VALUES[text.charCodeAt(index + 1)]!;
+    // A character that is none of them has a value below 0, or none at all.
+    if (!(low >= 0 && high >= 0)) throw new Error("a character of it is damaged");
+    held |= (low + 91 * high) << bits;
+    for (bits += alone ? 6 : 13; bits >= 8; bits -= 8, held >>>= 8) found[at++] = held;
+  }
   return found;
 }

@@ -1,4 +1,5 @@
 // A worker: it may unpack a part of the module, gets it compiled, then tasks, one after the other.
+// One worker has the opening of the module before the others have the whole.
 
 import { Engine } from "./engine";
 import type { Answer, MapPart, Task } from "./types";
@@ -6,7 +7,7 @@ import { type Packed, unpack } from "./unpack";
 
 type Message =
   | Packed
-  | { module: WebAssembly.Module }
+  | { module: WebAssembly.Module; opening: boolean }
   | { id: number; task: Task };
 
 interface Port {
@@ -15,40 +16,55 @@ interface Port {
 }
 
 const port = globalThis as unknown as Port;
-let engine: Promise<Engine> | undefined;
+let take: (engine: Promise<Engine>) => void = () => {};
+let engine = none();
+/** The engine of the opening. */
+let opening: Promise<Engine> | undefined;
 /** The task that is done. */
 let doing = 0;
+
+/** An engine that is still to come. */
+function none(): Promise<Engine> {
+  return new Promise((resolve) => (take = resolve));
+}
 
 port.onmessage = async ({
   data,
 }: MessageEvent<Message>) => {
-  if ("packed" in data) {
-    try {
-      const part = await unpack(data);
-      port.postMessage({ part }, [part.buffer as ArrayBuffer]);
-    } catch (error) {
-      port.postMessage({ damaged: reason(error) });
-    }
-    return;
-  }
+  if ("task" in data) return work(data.id, data.task);
   if ("module" in data) {
-    engine = Engine.start(data.module, (curve) =>
+    const started = Engine.start(data.module, (curve) =>
       port.postMessage({ id: doing, curve }, [curve.buffer as ArrayBuffer]),
     );
+    take(started);
+    engine = started;
+    opening = data.opening ? started : undefined;
     return;
   }
-  const ready = await engine;
-  if (!ready) return;
-  doing = data.id;
-  const begun = performance.now();
   try {
-    const answer = run(ready, data.task);
-    port.postMessage({ id: data.id, answer, ms: performance.now() - begun }, transferred(answer));
+    const part = await unpack(data);
+    port.postMessage({ part }, [part.buffer as ArrayBuffer]);
   } catch (error) {
-    // Its memory may be in any state.
-    port.postMessage({ id: data.id, dead: reason(error) });
+    port.postMessage({ damaged: reason(error) });
   }
 };
+
+async function work(id: number, task: Task): Promise<void> {
+  let own = engine;
+  try {
+    let ready = await own;
+    // It was replaced meanwhile.
+    while (own !== engine) ready = await (own = engine);
+    doing = id;
+    const begun = performance.now();
+    const answer = run(ready, task);
+    port.postMessage({ id, answer, ms: performance.now() - begun }, transferred(answer));
+  } catch (error) {
+    // Its memory may be in any state.
+    if (own === engine) engine = none();
+    port.postMessage({ id, dead: reason(error), opening: own === opening });
+  }
+}
 
 function reason(error: unknown): string {
   return error instanceof Error ? error.message : String(error);

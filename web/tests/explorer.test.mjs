@@ -731,23 +731,37 @@ test("a page that was written with a view shows it, and in a frame too", async (
 test("a damaged page says that it cannot compute, and why", async () => {
   const folder = mkdtempSync(join(tmpdir(), "explorer-"));
   const whole = readFileSync(PAGE, "utf8");
-  const at = whole.indexOf('id="wasm"') + 1000;
-  for (const [name, damage, why] of [
-    ["text", "!", /not correctly encoded/],
-    ["head", "", /damaged/],
-    ["module", "AAAA".repeat(100), /damaged/],
+  for (const [name, id, place, damage, why] of [
+    ["character of the opening", "opening", 1000, '"', /character of it is damaged/],
+    ["opening", "opening", 1000, "!!!!".repeat(100), /./],
+    ["character", "wasm", 1000, '"', /character of it is damaged/],
+    ["head", "wasm", 0, "!!!!", /damaged|do not fit/],
+    ["module", "wasm", 1000, "!!!!".repeat(100), /damaged|do not fit/],
   ]) {
     const file = join(folder, `${name}.html`);
-    const head = name === "head" ? whole.replace(/(data-size="\d+,\d+">)XQ/, "$1//") : whole;
-    writeFileSync(file, head.slice(0, at) + damage + head.slice(at + damage.length));
+    const at = whole.indexOf(">", whole.indexOf(`id="${id}"`)) + 1 + place;
+    writeFileSync(file, whole.slice(0, at) + damage + whole.slice(at + damage.length));
     const { page, said, close } = await browser.openFile(file);
     const told = () => document.getElementById("told").textContent;
     await page.waitForFunction(() =>
       /cannot compute/.test(document.getElementById("told").textContent),
     );
     assert.match(await page.evaluate(told), why, name);
+    // The first contact needs the opening alone.
+    const contacts = await page.locator("table.facts").count();
+    assert.equal(contacts, id === "wasm" ? 1 : 0, name);
     assert.deepEqual(said, []);
     await close();
   }
   rmSync(folder, { recursive: true });
+});
+
+ofPage("a contact that the opening has not comes with the whole", "preset=hooke", async (page) => {
+  await page.waitForFunction(() => globalThis.explorer.contact.contact);
+  const { law, restarts } = await page.evaluate(() => ({
+    law: globalThis.explorer.contact.contact.document.parameters.law,
+    restarts: globalThis.explorer.hand.restarts,
+  }));
+  assert.equal(law.normal, "linear");
+  assert.equal(restarts, 0);
 });
