@@ -235,25 +235,25 @@ impl<'a> Extended<'a> {
 
     /// The slopes of the state where a run begins, as formulas of parameters.
     fn first_slopes(&mut self, system: &System, begin: Formula) -> Vec<Formula> {
-        let mut slopes = vec![self.number(0.0); self.n];
-        for (place, first) in slopes.iter_mut().enumerate() {
-            let mut at_start = |mode: usize| {
-                let slope = system.modes[mode].slopes[place];
-                self.system.graph.rewritten(slope, &mut |_, node, _| match node {
-                    FormulaNode::Variable(Variable::Component(own)) => {
-                        Some(system.components[own as usize].start)
-                    }
-                    FormulaNode::Variable(Variable::Time) => Some(begin),
-                    _ => None,
-                })
-            };
-            *first = at_start(system.first);
+        let graph = self.graph();
+        let at_start = |graph: &mut Graph, mode: usize, place: usize| {
+            graph.rewritten(system.modes[mode].slopes[place], &mut |_, node, _| match node {
+                FormulaNode::Variable(Variable::Component(own)) => {
+                    Some(system.components[own as usize].start)
+                }
+                FormulaNode::Variable(Variable::Time) => Some(begin),
+                _ => None,
+            })
+        };
+        let first = |place: usize| {
+            let mut slope = at_start(graph, system.first, place);
             for &(condition, mode) in system.otherwise.iter().rev() {
-                let other = at_start(mode);
-                *first = self.system.graph.select(condition, *first, other);
+                let other = at_start(graph, mode, place);
+                slope = graph.select(condition, slope, other);
             }
-        }
-        slopes
+            slope
+        };
+        (0..system.components.len()).map(first).collect()
     }
 
     fn graph(&mut self) -> &mut Graph {
