@@ -141,6 +141,18 @@ fn a_guard_that_starts_on_a_plateau_fires_where_it_leaves_it() {
     });
 }
 
+/// 1 − ⌊y⌋ from y = 1, beside which it jumps.
+#[test]
+fn a_guard_that_starts_at_the_edge_of_a_plateau_leaves_it_at_its_end() {
+    each_step(|pair, options| {
+        for direction in [Direction::Below, Direction::Falling] {
+            let system = Readable(Shape::Steps, Guard::new(direction).terminal());
+            let found = places(pair, &system, (0.0, 3.0), &options);
+            close(&found.unwrap_or_else(|error| panic!("{error}")), &[1.0], 1e-14);
+        }
+    });
+}
+
 #[test]
 fn a_black_box_that_starts_on_a_plateau_is_an_error_or_right() {
     for step in [0.03, 0.1, 0.25, 1.0, f64::INFINITY] {

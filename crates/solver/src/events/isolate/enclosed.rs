@@ -80,10 +80,23 @@ pub(crate) fn first_enclosed_crossing(
     search.walk(theta)
 }
 
-/// Whether an enclosed curve rests on zero from a step fraction on: its bounds there are zero.
+/// Whether an enclosed curve rests on zero from a step fraction on: its bounds are zero there, or
+/// right behind it if it is beside a jump.
 pub(crate) fn rests(curve: &mut dyn Enclosed, first: f64, resolution: f64) -> bool {
-    let high = (first + 4.0 * resolution).min(1.0);
-    high > first && curve.over(first, high).value == Interval::ZERO
+    const PARTS: usize = 8;
+    let (mut low, mut away) = (first, 4.0 * resolution);
+    for _ in 0..PARTS {
+        let high = (first + away).min(1.0);
+        if high <= low {
+            break;
+        }
+        let Enclosure { value, .. } = curve.over(low, high);
+        if value == Interval::ZERO || value.sign() != 0.0 {
+            return value == Interval::ZERO;
+        }
+        (low, away) = (high, 4.0 * away);
+    }
+    false
 }
 
 /// The last sign that an enclosed curve shows on a step at whose end it is zero, if it starts with
