@@ -177,7 +177,8 @@ class FormulaSystem:
         the start, through every event. The rest is as in `solve`.
 
         Derivatives are as accurate as the states. Those of formulas are formulas: nothing is
-        differenced. Raises ComputationError where there are none: at a graze.
+        differenced. Raises ComputationError where there are none: at a graze. Where events
+        accumulate, the run with derivatives ends, also if the system goes on from there by `rest`.
 
         >>> import stickslip
         >>> ball = stickslip.system(\"\"\"

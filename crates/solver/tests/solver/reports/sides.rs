@@ -310,8 +310,8 @@ impl Report for Plateau {
     }
 }
 
-/// SUNDIALS 881, OpenModelica 13680: a guard that is zero on a stretch never fires where bounds show
-/// that it rests there, and is refused, with its name, where its values are all that is known.
+/// SUNDIALS 881, OpenModelica 13680: a guard that is zero on a stretch never fires where bounds
+/// show that it rests there, and is refused, with its name, where only its values are known.
 #[test]
 fn a_guard_that_is_zero_throughout_never_fires_or_is_refused() {
     for (name, run) in runs(&Plateau(-1.0), (0, 0.0, [0.0]), 2.0, &Options::default()) {
