@@ -135,7 +135,7 @@ fn others_have_those_of_differences() {
         let start = "parameter p = LATE, q = 1.5\nstate x = q*p, v = 0.3\nx' = v + t*x\n\
                      mode up\n  v' = -q*x + t\n  when x > 2 -> down\n\
                      mode down\n  v' = -2*x*p - 3*t\n  when x < 0.5 -> up\n\
-                     start at p + q*p*p in up if p < 0.5 else down\nend = 4";
+                     start if p < 0.5 in up else down at p + q*p*p\nend = 4";
         let start = start.replace("LATE", late);
         compare("start", &start, &[By::Parameter(0), By::Parameter(1), By::Start(0)], None);
     }
