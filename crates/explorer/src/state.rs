@@ -1,5 +1,5 @@
-//! What the C interface keeps between calls: the scene, and the arrays that the page reads. Programs
-//! in Rust need no interface: they use this.
+//! What the C interface keeps between calls: the scene, and the arrays that the page reads.
+//! Programs in Rust need no interface: they use this.
 
 use std::ops::Range;
 
