@@ -372,9 +372,10 @@ impl Equations {
     /// Whether what depends on the time is the same one period later, at both ends of segments.
     pub fn repeats(&self, draft: &Draft, ends: &[End]) -> bool {
         let (period, starts) = (draft.period(), draft.starts());
+        let sizes = &self.sizes.as_slice()[..self.n];
         let is_same = |i: usize, s: f64, state: &[f64]| {
             let at = |s: f64| self.events[i].at(&draft.parameters, s, state);
-            at(s).is_like(&at(s + period))
+            at(s).is_like(&at(s + period), sizes, period)
         };
         self.clock.is_none()
             || (0..self.legs.len()).all(|i| {

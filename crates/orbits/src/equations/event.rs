@@ -137,21 +137,26 @@ impl Event {
         reset + if plain { DMatrix::zeros(n, n) } else { jump * by / rate }
     }
 
-    /// Whether the formulas have the same values at another time.
-    pub fn is_like(&self, later: &Self) -> bool {
-        let own = [&self.after, &self.slopes, &self.slopes_after].map(DVector::as_slice);
-        let others = [&later.after, &later.slopes, &later.slopes_after].map(DVector::as_slice);
+    /// Whether the formulas have the same values at another time. Components have these sizes, and
+    /// their slopes these sizes over the period: both may be zero at one event.
+    pub fn is_like(&self, later: &Self, sizes: &[f64], period: f64) -> bool {
+        let near = |one: f64, other: f64, size: f64| {
+            (one - other).abs() <= LIKE * (one.abs() + other.abs()) + HIDDEN * size
+        };
         // Derivatives by parameters grow with the time where its scale depends on them.
         let by = |event: &Self| event.after_by.columns(0, event.slopes.len() + 1).into_owned();
-        let (by, other) = (by(self), by(later));
-        let own = own.into_iter().chain([by.as_slice(), &self.conditions]);
-        let others = others.into_iter().chain([other.as_slice(), &later.conditions]);
-        own.zip(others).all(|(own, others)| {
-            // A condition is zero at its event.
-            let size = own.iter().fold(self.after.amax(), |size, it| size.max(it.abs()));
-            own.iter().zip(others).all(|(one, other)| {
-                (one - other).abs() <= LIKE * (one.abs() + other.abs()) + HIDDEN * size
-            })
+        let (by, other_by) = (by(self), by(later));
+        let own = [by.as_slice(), &self.conditions];
+        let same =
+            own.into_iter().zip([other_by.as_slice(), &later.conditions]).all(|(own, others)| {
+                // A condition is zero at its event.
+                let size = own.iter().fold(self.after.amax(), |size, it| size.max(it.abs()));
+                own.iter().zip(others).all(|(one, other)| near(*one, *other, size))
+            });
+        same && sizes.iter().enumerate().all(|(k, size)| {
+            near(self.after[k], later.after[k], *size)
+                && near(self.slopes[k], later.slopes[k], size / period)
+                && near(self.slopes_after[k], later.slopes_after[k], size / period)
         })
     }
 

@@ -74,8 +74,12 @@ fn an_event_at_the_edge_of_sliding() {
     let text = "parameter m = 0.3\nstate x = 0.1, phase = 0\nphase' = 1\nwhen phase > pi \
                 \"phase\"\n  phase := phase - 2*pi\nmode move\n  sliding on x = 0\n  x' = \
                 cos(phase) - m*sign(x)\nend = 9";
+    let explicit = "parameter m = 0.3\nstate x = 0.1\nevery 2*pi \"tick\"\nmode move\n  sliding \
+                    on x = 0\n  x' = cos(t) - m*sign(x)\nend = 9";
     let edge = 1.0 / 1.0_f64.hypot(PI / 2.0);
-    require(&settled(text, [0.2, 0.6]), SpecialKind::SlidingEdge, edge);
+    for text in [text, explicit] {
+        require(&settled(text, [0.2, 0.6]), SpecialKind::SlidingEdge, edge);
+    }
 }
 
 /// Two equal relays that know nothing of each other: a difference of their phases stays, so that
