@@ -113,6 +113,7 @@ mod newton;
 mod orbit;
 mod regions;
 mod settle;
+mod spaces;
 mod watch;
 
 pub use attractors::{Attractor, Basins, Column, Exponents, Section, SectionPoint};

@@ -1,10 +1,14 @@
 //! Multipliers: eigenvalues of the derivative of the return to the start.
 
-use nalgebra::{DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
-/// Singular values below this part of the largest one are 0: the matrix loses a dimension exactly
-/// where a segment slides or all states are reset to one.
+use crate::spaces::range;
+
+/// What is below this part of the largest is 0: the matrix loses a dimension exactly where a segment
+/// slides or all states are reset to one.
 const RANK: f64 = 1e-14;
+/// How far sums of eigenvalues may be off, as a part of the size of the matrix.
+const SUM: f64 = 1e-9;
 /// Rounds of the search for eigenvalues.
 const ROUNDS: usize = 10_000;
 
@@ -22,19 +26,23 @@ pub(crate) fn multipliers(
     let mut own = own;
     // Zeros in a chain would be found as small numbers: only what is in the range is kept.
     while own.nrows() > 0 {
-        let svd = own.clone().svd(true, false);
-        let least = RANK * svd.singular_values.amax();
-        let rank = svd.singular_values.iter().filter(|value| **value > least).count();
-        if rank == own.nrows() {
+        let range = range(&own, RANK);
+        if range.ncols() == own.nrows() {
             break;
         }
-        let range = svd.u?.columns(0, rank).into_owned();
         own = range.transpose() * own * range;
     }
     let mut found = Vec::with_capacity(all);
     if own.nrows() > 0 {
-        let schur = Schur::try_new(own, f64::EPSILON, ROUNDS)?;
-        found.extend(schur.complex_eigenvalues().iter().map(|it| [it.re, it.im]));
+        let values = Schur::try_new(own.clone(), f64::EPSILON, ROUNDS)?.complex_eigenvalues();
+        // What the values and their squares sum up to is known without them.
+        let (size, squares) = (own.norm(), (&own * &own).trace());
+        let sums = [values.iter().sum(), values.iter().map(|it| it * it).sum::<Complex<f64>>()];
+        let near = |sum: Complex<f64>, known: f64, size: f64| (sum - known).norm() <= SUM * size;
+        if !(near(sums[0], own.trace(), size) && near(sums[1], squares, size * size)) {
+            return None;
+        }
+        found.extend(values.iter().map(|it| [it.re, it.im]));
     }
     found.resize(all, [0.0, 0.0]);
     let size = |[re, im]: &[f64; 2]| re.hypot(*im);

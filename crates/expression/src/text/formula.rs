@@ -1,5 +1,7 @@
 //! Formulas: read from tokens straight into a graph.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use super::reader::{RESERVED, Reader};
 use super::tokens::Token;
 use super::{TextError, names};
@@ -176,8 +178,9 @@ impl Reader<'_> {
         }
     }
 
-    /// The same condition of a rule on a number that is never 0, if it stands still in the mode, as
-    /// what only rules change: it may stay on the limit, where a guard decides nothing.
+    /// The same condition of a rule on a number that is never 0, if it stands still in the mode or
+    /// jumps from value to value, as what only rules change, or `floor(x)`: it may stay on the
+    /// limit, where a guard decides nothing.
     fn off_limit(&mut self, truth: Truth) -> Truth {
         let (Truth::Negative(formula) | Truth::NotNegative(formula)) = truth;
         let graph = &self.system.graph;
@@ -192,17 +195,7 @@ impl Reader<'_> {
             _ if is_off(formula) => return truth,
             _ => {}
         }
-        let reads = self.system.graph.reads(&[formula]);
-        let components = || reads.iter().filter(|it| matches!(it, Variable::Component(_)));
-        let stays = |it: &Variable| match *it {
-            Variable::Time => false,
-            Variable::Component(place) => {
-                let slope = self.slopes[place as usize];
-                slope.and_then(|slope| self.system.graph.value(slope)) == Some(0.0)
-            }
-            Variable::Parameter(_) => true,
-        };
-        if !self.in_rule || !reads.iter().all(stays) || components().next().is_none() {
+        if !self.in_rule || !(self.stands(formula) || self.jumps_alone(formula)) {
             return truth;
         }
         let graph = &mut self.system.graph;
@@ -224,6 +217,41 @@ impl Reader<'_> {
             Truth::Negative(_) => Truth::Negative(formula),
             Truth::NotNegative(_) => Truth::NotNegative(formula),
         }
+    }
+
+    /// Whether a formula reads components, and only such as stand still.
+    fn stands(&self, formula: Formula) -> bool {
+        let reads = self.system.graph.reads(&[formula]);
+        let stays = |it: &Variable| match *it {
+            Variable::Time => false,
+            Variable::Component(place) => {
+                let slope = self.slopes[place as usize];
+                slope.and_then(|slope| self.system.graph.value(slope)) == Some(0.0)
+            }
+            Variable::Parameter(_) => true,
+        };
+        reads.iter().all(stays) && reads.iter().any(|it| matches!(it, Variable::Component(_)))
+    }
+
+    /// Whether a formula changes in jumps, and in no other way.
+    fn jumps_alone(&mut self, formula: Formula) -> bool {
+        let graph = &self.system.graph;
+        let mut nodes = graph.nodes().iter().zip(graph.needed(&[formula]));
+        let jumps = |node: &FormulaNode| {
+            matches!(node, FormulaNode::Unary(Unary::Floor, _) | FormulaNode::Select(..))
+        };
+        if !nodes.any(|(node, needed)| needed && jumps(node)) {
+            return false;
+        }
+        let slope = self.system.graph.slope(formula, &mut |graph, variable| {
+            // Rates that differ do not cancel.
+            graph.constant(match variable {
+                Variable::Time => 0.5,
+                Variable::Component(place) => 1.0 + FRAC_1_SQRT_2 * f64::from(place),
+                Variable::Parameter(_) => 0.0,
+            })
+        });
+        self.system.graph.value(slope) == Some(0.0)
     }
 
     /// A number that becomes negative where the condition begins to hold.

@@ -121,7 +121,8 @@ end = 10
 fn guards_that_jump_are_decided() {
     for jumps in ["(if sin(1000*t) > 0.99999 then 1 else -1)", "sign(sin(1000*t) - 0.99999)"] {
         let (end, switches) = runs(&format!(
-            "state x = 0\nx' = 1\nmode before\nwhen {jumps} > 0 \"peak\" -> behind\nmode behind\nend = 10"
+            "state x = 0\nx' = 1\nmode before\nwhen {jumps} rises through 0 \"peak\" -> behind\nmode \
+             behind\nend = 10"
         ));
         let expected = 1e-3 * 0.99999_f64.asin();
         assert!(end.decided && (switches[0].s - expected).abs() < 1e-12, "{jumps} {switches:?}");
@@ -313,4 +314,19 @@ fn a_count_may_stay_at_the_limit_of_a_condition() {
     assert!((runs(still).0.s - 2.0).abs() < 1e-13);
     let text = parsed(still).text();
     assert_eq!(parsed(&text).text(), text);
+}
+
+#[test]
+fn a_jump_may_end_at_the_limit_of_a_condition() {
+    let ends = |rule: &str| runs(&format!("state x = 0.25\nx' = 1\n{rule}\nend = 10")).0.s;
+    for (rule, s) in [
+        ("when floor(x) >= 1 -> end", 0.75),
+        ("when floor(x) > 1 -> end", 1.75),
+        ("when 2 <= floor(x) -> end", 1.75),
+        ("when not (floor(2*x) < 3) -> end", 1.25),
+        ("when floor(t/2) >= 1 and x > 0 -> end", 2.0),
+        ("when sign(x - 4) >= 0 -> end", 3.75),
+    ] {
+        assert!((ends(rule) - s).abs() < 1e-13, "{rule}: {}", ends(rule));
+    }
 }

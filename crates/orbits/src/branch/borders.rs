@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::spaces::kernel;
+
 /// What borders a matrix, so that a number is zero exactly where it is singular (Govaerts,
 /// *Numerical Methods for Bifurcations of Dynamical Equilibria*, 2000, chapter 3).
 #[derive(Clone)]
@@ -12,8 +14,7 @@ pub(super) struct Borders {
 
 impl Borders {
     pub fn of(matrix: &DMatrix<f64>) -> Self {
-        let (column, row) = null_vectors(matrix);
-        Self { column, row }
+        Self { column: null_vector(&matrix.transpose()), row: null_vector(matrix) }
     }
 
     pub fn value(&self, matrix: &DMatrix<f64>) -> Option<f64> {
@@ -29,23 +30,12 @@ impl Borders {
 
 /// The plane that the derivatives of a branch map to about zero: both branches that meet at a point
 /// lie in it.
-pub(super) fn plane(slopes: &DMatrix<f64>) -> Option<[DVector<f64>; 2]> {
-    let svd = slopes.clone().insert_row(slopes.nrows(), 0.0).svd(false, true);
-    let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
-    order.sort_by(|one, other| svd.singular_values[*one].total_cmp(&svd.singular_values[*other]));
-    let (rows, [one, other]) = (svd.v_t?, [*order.first()?, *order.get(1)?]);
-    Some([one, other].map(|row| rows.row(row).transpose()))
+pub(super) fn plane(slopes: &DMatrix<f64>) -> [DVector<f64>; 2] {
+    let both = kernel(slopes, 2);
+    [0, 1].map(|own| both.column(own).into_owned())
 }
 
-/// The left and the right singular vector of the least singular value.
-pub(super) fn null_vectors(matrix: &DMatrix<f64>) -> (DVector<f64>, DVector<f64>) {
-    let svd = matrix.clone().svd(true, true);
-    let least = svd.singular_values.imin();
-    match (svd.u, svd.v_t) {
-        (Some(left), Some(right)) => {
-            (left.column(least).into_owned(), right.row(least).transpose())
-        }
-        // Both were asked for.
-        _ => (DVector::zeros(matrix.nrows()), DVector::zeros(matrix.ncols())),
-    }
+/// A vector that a matrix maps to about zero.
+pub(super) fn null_vector(matrix: &DMatrix<f64>) -> DVector<f64> {
+    kernel(matrix, 1).column(0).into_owned()
 }

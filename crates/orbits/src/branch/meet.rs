@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::borders::{null_vectors, plane};
+use super::borders::{null_vector, plane};
 use super::point::{Along, Point};
 use crate::error::OrbitError;
 use crate::newton::search;
@@ -28,8 +28,8 @@ impl Along<'_> {
         let (equations, count) = (self.equations, self.equations.count());
         let start = &from.place + part * length * &from.tangent;
         let near = equations.at(&start)?.slopes;
-        let across = null_vectors(&near).0;
-        let [u, v] = plane(&near).ok_or(NOWHERE)?;
+        let across = null_vector(&near.transpose());
+        let [u, v] = plane(&near);
         // Two numbers that are zero where a direction is not reached.
         let lost = |slopes: &DMatrix<f64>| {
             let mut all = slopes.clone().insert_rows(count, 2, 0.0).insert_column(count + 1, 0.0);

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::borders::null_vectors;
+use super::borders::null_vector;
 use super::watches::Watches;
 use crate::equations::{Draft, Equations, Evaluation};
 use crate::error::OrbitError;
@@ -182,7 +182,7 @@ fn tangent(slopes: &DMatrix<f64>, direction: &DVector<f64>) -> Option<DVector<f6
     let found = solved.unwrap_or_else(|| {
         // Across the direction: the null vector of the equations alone.
         matrix.row_mut(count).fill(0.0);
-        null_vectors(&matrix).1
+        null_vector(&matrix)
     });
     let unit = found.try_normalize(0.0)?;
     Some(if unit.dot(direction) < 0.0 { -unit } else { unit })

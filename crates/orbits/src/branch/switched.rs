@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use stickslip_expression::InvalidValue;
 
-use super::borders::{null_vectors, plane};
+use super::borders::{null_vector, plane};
 use super::{SpecialKind, SpecialOrbit};
 use crate::equations::{Draft, Equations};
 use crate::error::OrbitError;
@@ -43,7 +43,7 @@ impl Orbits {
         let moved = |by: f64, direction: &DVector<f64>| single.draft(&(&place + by * direction));
         let (middle, aside) = match special.kind {
             SpecialKind::Flip => {
-                let direction = null_vectors(&single.returning(&slopes, -1.0)).1;
+                let direction = null_vector(&single.returning(&slopes, -1.0));
                 let direction = direction.insert_row(single.count(), 0.0);
                 let [first, second] = [aside, -aside].map(|by| moved(by, &direction));
                 (joined(&one, &one), joined(&first, &second))
@@ -54,7 +54,7 @@ impl Orbits {
                 let expected = "an orbit of the branch beside the special one";
                 InvalidValue::check("the neighbour", other.legs.len(), expected, accepted)?;
                 let known = single.place(&other) - &place;
-                let [u, v] = plane(&slopes).ok_or(NOWHERE)?;
+                let [u, v] = plane(&slopes);
                 let across = known.dot(&v) * &u - known.dot(&u) * &v;
                 let direction = across.try_normalize(0.0).ok_or(NOWHERE)?;
                 (one.clone(), moved(aside, &direction))

@@ -3,8 +3,10 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, Method, Number, Options, Outcome, ReadableSystem, Start,
-    State, run,
+    State,
 };
+
+use crate::erased::run;
 
 struct Ball {
     amplitude: f64,

@@ -1,10 +1,11 @@
 //! Runs along systems and observers of any type as runs along one type.
 //!
 //! The solver is compiled anew for each type of system and of observer that it runs along, which
-//! takes a second. Here it is compiled once for each method, dimension and number of guards, for
-//! systems that can be read and for black boxes; modes are numbered. The functions have the names,
-//! the arguments and the results of those of the solver, and call them. They take no account of a
-//! step that a system has of its own ([`HybridSystem::step`]), as weighted ones have.
+//! takes seconds. Here it is compiled once for each method and dimension, for systems that can be
+//! read and for black boxes; modes are numbered, and behind a system's guards are others that are
+//! off. The functions have the names, the arguments and the results of those of the solver, and
+//! call them. They take no account of a step that a system has of its own
+//! ([`HybridSystem::step`]), as weighted ones have.
 
 mod dynamic;
 mod modes;
@@ -22,14 +23,32 @@ use system::{Erased, Numbered, Told, Watching};
 
 use crate::runs::{Wave, at, ball};
 
+/// How many guards an erased system has.
+const FEW: usize = 8;
+const MANY: usize = 64;
+
+struct Guards<const G: usize>;
+
+impl<const G: usize> Guards<G> {
+    const ARE_FEW: bool = G <= FEW;
+}
+
 /// Calls a function with an erased system of the type `S`.
 macro_rules! with_system {
     ($system:ident => $call:expr) => {
         if S::READABLE {
-            let $system = &Erased::<N, G, true>($system);
+            if Guards::<G>::ARE_FEW {
+                let $system = &Erased::<N, FEW, true>($system);
+                $call
+            } else {
+                let $system = &Erased::<N, MANY, true>($system);
+                $call
+            }
+        } else if Guards::<G>::ARE_FEW {
+            let $system = &Erased::<N, FEW, false>($system);
             $call
         } else {
-            let $system = &Erased::<N, G, false>($system);
+            let $system = &Erased::<N, MANY, false>($system);
             $call
         }
     };
@@ -52,7 +71,7 @@ macro_rules! with_observer {
 macro_rules! with_numbers {
     ($system:ident, $start:ident, $observer:ident => $call:expr) => {{
         let modes = &Modes::default();
-        let ($system, $start) = (&Numbered { system: $system, modes }, modes.start($start));
+        let ($system, $start) = (&Numbered::<_, _, G> { system: $system, modes }, modes.start($start));
         let $observer = &mut Told { observer: $observer, modes };
         let run = with_system!($system => with_observer!($observer => $call));
         run.map(|run| modes.end(run))
@@ -136,7 +155,7 @@ pub fn margins<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>
     options: &Options,
 ) -> Result<Margins, RunError> {
     let modes = &Modes::default();
-    let (system, start) = (&Numbered { system, modes }, modes.start(start));
+    let (system, start) = (&Numbered::<_, _, G> { system, modes }, modes.start(start));
     with_system!(system => stickslip_solver::margin::margins(method, system, start, end, options))
 }
 
@@ -150,7 +169,7 @@ pub fn margin<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
     margin: &Margin,
 ) -> Result<Option<NearMiss>, RunError> {
     let modes = &Modes::default();
-    let (system, start) = (&Numbered { system, modes }, modes.start(start));
+    let (system, start) = (&Numbered::<_, _, G> { system, modes }, modes.start(start));
     with_system!(system => stickslip_solver::margin::margin(method, system, start, end, options, margin))
 }
 

@@ -4,10 +4,11 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Number, Options, ReadableSystem, Start,
-    State, run,
+    State,
 };
 
 use crate::black_box::BlackBox;
+use crate::erased::run;
 
 const RISING: Guard = Guard::new(Direction::Rising);
 

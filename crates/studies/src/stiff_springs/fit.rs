@@ -114,15 +114,17 @@ fn least_squares(
     let sizes: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
     let matrix = DMatrix::from_fn(tops.len(), terms.len(), |i, j| matrix[(i, j)] / sizes[j]);
     let values = DVector::from_iterator(tops.len(), tops.iter().map(|top| value(*top)));
-    let factors = matrix.clone().svd(true, true);
-    let solution = factors.solve(&values, 0.0).ok()?;
+    let factors = matrix.clone().qr();
+    let triangle = factors.r();
+    let solution = triangle.solve_upper_triangular(&(factors.q().transpose() * &values))?;
     let variance = (&matrix * &solution - &values).norm_squared() / freedom as f64;
-    let rows = factors.v_t?;
-    let parts = (0..terms.len()).map(|i| rows[(i, index)] / factors.singular_values[i]);
-    let spread: f64 = parts.map(|part| part * part).sum();
+    // Of the inverse of RᵀR the diagonal is wanted.
+    let mut axis = DVector::zeros(terms.len());
+    axis[index] = 1.0;
+    let spread = triangle.tr_solve_upper_triangular(&axis)?.norm();
     Some(FittedConstant {
         value: solution[index] / sizes[index],
-        uncertainty: (variance * spread).sqrt() / sizes[index],
+        uncertainty: variance.sqrt() * spread / sizes[index],
     })
 }
 

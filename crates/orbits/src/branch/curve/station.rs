@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use stickslip_expression::InvalidValue;
 
-use super::super::borders::{Borders, null_vectors};
+use super::super::borders::{Borders, null_vector};
 use super::super::change::Margin;
 use super::super::point::{LEAST_TURN, NO_DIRECTION, Point};
 use super::super::test::Test;
@@ -185,7 +185,7 @@ fn direction(
         return None;
     }
     matrix.row_mut(count).copy_from(&(gradient / size).transpose());
-    let unit = null_vectors(&matrix).1;
+    let unit = null_vector(&matrix);
     let turned = towards.is_some_and(|towards| unit.dot(towards) < 0.0);
     Some(if turned { -unit } else { unit })
 }

@@ -10,40 +10,57 @@ use stickslip_solver::{
     Weighted, run,
 };
 
-/// Levels that rise and fall. The even ones are pushed up when they are low; after a push only the
-/// first one is watched, until it has risen.
+/// Small systems, of one type.
 #[derive(Clone)]
-struct Levels<const ON_FIXED_STATES: bool> {
-    guards: Vec<Guard>,
+enum Small<const ON_FIXED_STATES: bool> {
+    /// Levels that rise and fall. The even ones are pushed up when they are low; after a push only
+    /// the first one is watched, until it has risen.
+    Levels(Vec<Guard>),
+    /// Two oscillators of very different speed, with tolerances of their own, or with none.
+    Oscillators(Vec<(f64, f64)>),
 }
 
-impl<const ON_FIXED_STATES: bool> Levels<ON_FIXED_STATES> {
-    fn new(n: usize) -> Self {
-        Self { guards: vec![Guard::new(Direction::Below); n] }
+impl<const ON_FIXED_STATES: bool> Small<ON_FIXED_STATES> {
+    fn levels(n: usize) -> Self {
+        Self::Levels(vec![Guard::new(Direction::Below); n])
     }
 }
 
-impl<const ON_FIXED_STATES: bool> ReadableDynamic for Levels<ON_FIXED_STATES> {
+impl<const ON_FIXED_STATES: bool> ReadableDynamic for Small<ON_FIXED_STATES> {
     type Mode = bool;
     const ON_FIXED_STATES: bool = ON_FIXED_STATES;
 
     fn most_guards(&self) -> usize {
-        self.guards.len()
+        self.guards(false).len()
+    }
+    fn tolerances(&self) -> &[(f64, f64)] {
+        match self {
+            Self::Levels(_) => &[],
+            Self::Oscillators(tolerances) => tolerances,
+        }
     }
     fn field<T: Number>(&self, _: bool, s: T, y: &[T], slope: &mut [T]) {
+        if let Self::Oscillators(_) = self {
+            slope.copy_from_slice(&[y[1], -y[0], y[3] * 30.0, -y[2] * 30.0]);
+            return;
+        }
         let mean = y.iter().fold(T::from(0.0), |sum, &y| sum + y) / y.len() as f64;
         for (i, slope) in slope.iter_mut().enumerate() {
             *slope = (s * (1.0 + 0.1 * i as f64)).cos() * 0.6 - 0.4 - (y[i] - mean) * 0.3;
         }
     }
     fn guards(&self, pushed: bool) -> &[Guard] {
-        if pushed { &self.guards[..1] } else { &self.guards }
+        match self {
+            Self::Levels(guards) if pushed => &guards[..1],
+            Self::Levels(guards) => guards,
+            Self::Oscillators(_) => &[],
+        }
     }
     fn guard_values<T: Number>(&self, pushed: bool, _: T, y: &[T], values: &mut [T]) {
-        if pushed {
-            values[0] = -y[0] + 0.2;
-        } else {
-            values.copy_from_slice(y);
+        match self {
+            Self::Levels(_) if pushed => values[0] = -y[0] + 0.2,
+            Self::Levels(_) => values.copy_from_slice(y),
+            Self::Oscillators(_) => {}
         }
     }
     fn transition(&self, pushed: bool, guard: usize, _: f64, y: &mut [f64]) -> bool {
@@ -89,7 +106,7 @@ fn near(a: &[f64], b: &[f64], by: f64) -> bool {
 
 fn compare<M: Method>(method: M, n: usize) {
     let name = format!("{n} components");
-    let (fixed, free) = (Levels::<true>::new(n), Levels::<false>::new(n));
+    let (fixed, free) = (Small::<true>::levels(n), Small::<false>::levels(n));
     let state: Vec<f64> = (0..n).map(|i| 0.3 + 0.05 * i as f64).collect();
     let start = || DynamicStart { mode: false, s: 0.25, state: &state };
     let (end, options) = (12.0, Options::with_tolerance(1e-11));
@@ -146,8 +163,8 @@ fn a_system_that_is_filled_up_takes_the_same_steps() {
         let state = vec![5.0; n];
         let start = || DynamicStart { mode: false, s: 0.0, state: &state };
         let options = Options::default();
-        let fixed = run_dynamic(Dop853, &Levels::<true>::new(n), start(), 3.0, &options, &mut ());
-        let free = run_dynamic(Dop853, &Levels::<false>::new(n), start(), 3.0, &options, &mut ());
+        let fixed = run_dynamic(Dop853, &Small::<true>::levels(n), start(), 3.0, &options, &mut ());
+        let free = run_dynamic(Dop853, &Small::<false>::levels(n), start(), 3.0, &options, &mut ());
         let steps = |run: Result<stickslip_solver::dynamic::DynamicRun<bool>, _>| {
             let statistics = run.expect("a run").statistics;
             (statistics.accepted, statistics.rejected)
@@ -162,47 +179,25 @@ fn other_systems_run_on_buffers() {
     fn is_dynamic<S: DynamicSystem>(_: &S) -> bool {
         S::ON_FIXED_STATES
     }
-    let none = Levels::<true> { guards: Vec::new() };
+    let none = Small::<true>::levels(0);
     assert!(is_dynamic(&none));
     let start = DynamicStart { mode: false, s: 0.0, state: &[] };
     let run = run_dynamic(Dop853, &none, start, 3.0, &Options::default(), &mut ());
     assert_eq!(run.expect("a run").s, 3.0);
 }
 
-/// Two oscillators of very different speed, with tolerances of their own, or with none.
-struct Oscillators<const ON_FIXED_STATES: bool>(Vec<(f64, f64)>);
-
-impl<const ON_FIXED_STATES: bool> ReadableDynamic for Oscillators<ON_FIXED_STATES> {
-    type Mode = ();
-    const ON_FIXED_STATES: bool = ON_FIXED_STATES;
-
-    fn most_guards(&self) -> usize {
-        0
-    }
-    fn tolerances(&self) -> &[(f64, f64)] {
-        &self.0
-    }
-    fn field<T: Number>(&self, (): (), _: T, y: &[T], slope: &mut [T]) {
-        slope.copy_from_slice(&[y[1], -y[0], y[3] * 30.0, -y[2] * 30.0]);
-    }
-    fn guards(&self, (): ()) -> &[Guard] {
-        &[]
-    }
-    fn guard_values<T: Number>(&self, (): (), _: T, _: &[T], _: &mut [T]) {}
-}
-
 #[test]
 fn each_component_has_its_tolerance() {
     let state = [0.0, 1.0, 0.0, 1.0];
-    let start = || DynamicStart { mode: (), s: 0.0, state: &state };
+    let start = || DynamicStart { mode: false, s: 0.0, state: &state };
     let options = Options { rtol: 1e-11, atol: 1e-11, ..Options::default() };
     let fixed = |own: &[(f64, f64)]| {
-        let system = Oscillators::<true>(own.to_vec());
+        let system = Small::<true>::Oscillators(own.to_vec());
         let run = run_dynamic(Dop853, &system, start(), 3.0, &options, &mut ()).expect("a run");
         (run.state, run.statistics.accepted)
     };
     let free = |own: &[(f64, f64)]| {
-        let system = Oscillators::<false>(own.to_vec());
+        let system = Small::<false>::Oscillators(own.to_vec());
         let run = run_dynamic(Dop853, &system, start(), 3.0, &options, &mut ()).expect("a run");
         let back = run_dynamic_backwards(Dop853, &system, start(), -3.0, &options, &mut ());
         assert_eq!(back.expect("a run").statistics, run.statistics);

@@ -8,13 +8,14 @@ use stickslip_solver::{
 
 use super::modes::Modes;
 
-/// What a system consists of, with numbers for its modes.
-pub trait Parts<const N: usize, const G: usize> {
+/// What a system consists of, with numbers for its modes, and with guards that are off behind its
+/// own up to the number `W`.
+pub trait Parts<const N: usize, const W: usize> {
     fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N>;
-    fn guards(&self, mode: usize) -> [Guard; G];
-    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G];
-    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G];
-    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G];
+    fn guards(&self, mode: usize) -> [Guard; W];
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; W];
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; W];
+    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; W];
     fn settle(&self, mode: usize, y: &State<N>) -> usize;
     fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64;
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>);
@@ -23,33 +24,38 @@ pub trait Parts<const N: usize, const G: usize> {
     fn rest(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> Option<(usize, State<N>)>;
 }
 
-/// A system whose modes have numbers.
-pub struct Numbered<'a, S, Mode> {
+/// A system of `G` guards whose modes have numbers.
+pub struct Numbered<'a, S, Mode, const G: usize> {
     pub system: &'a S,
     pub modes: &'a Modes<Mode>,
 }
 
-impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Parts<N, G>
-    for Numbered<'_, S, S::Mode>
+/// A list that goes on with a value.
+fn padded<T: Copy, const G: usize, const W: usize>(own: [T; G], off: T) -> [T; W] {
+    std::array::from_fn(|i| own.get(i).copied().unwrap_or(off))
+}
+
+impl<S: HybridSystem<N, G>, const N: usize, const G: usize, const W: usize> Parts<N, W>
+    for Numbered<'_, S, S::Mode, G>
 {
     fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N> {
         self.system.field(self.modes.mode(mode), s, y)
     }
 
-    fn guards(&self, mode: usize) -> [Guard; G] {
-        self.system.guards(self.modes.mode(mode))
+    fn guards(&self, mode: usize) -> [Guard; W] {
+        padded(self.system.guards(self.modes.mode(mode)), Guard::OFF)
     }
 
-    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
-        self.system.guard_values(self.modes.mode(mode), s, y)
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; W] {
+        padded(self.system.guard_values(self.modes.mode(mode), s, y), f64::NAN)
     }
 
-    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
-        self.system.guard_rates(self.modes.mode(mode), s, y)
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; W] {
+        padded(self.system.guard_rates(self.modes.mode(mode), s, y), f64::NAN)
     }
 
-    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G] {
-        self.system.enclose_guards(self.modes.mode(mode), s, y)
+    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; W] {
+        padded(self.system.enclose_guards(self.modes.mode(mode), s, y), Enclosure::ENTIRE)
     }
 
     fn settle(&self, mode: usize, y: &State<N>) -> usize {
@@ -80,12 +86,12 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Parts<N, G>
 }
 
 /// Any system.
-pub struct Erased<'a, const N: usize, const G: usize, const READABLE: bool>(
-    pub &'a dyn Parts<N, G>,
+pub struct Erased<'a, const N: usize, const W: usize, const READABLE: bool>(
+    pub &'a dyn Parts<N, W>,
 );
 
-impl<const N: usize, const G: usize, const READABLE: bool> HybridSystem<N, G>
-    for Erased<'_, N, G, READABLE>
+impl<const N: usize, const W: usize, const READABLE: bool> HybridSystem<N, W>
+    for Erased<'_, N, W, READABLE>
 {
     type Mode = usize;
 
@@ -95,19 +101,19 @@ impl<const N: usize, const G: usize, const READABLE: bool> HybridSystem<N, G>
         self.0.field(mode, s, y)
     }
 
-    fn guards(&self, mode: usize) -> [Guard; G] {
+    fn guards(&self, mode: usize) -> [Guard; W] {
         self.0.guards(mode)
     }
 
-    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; W] {
         self.0.guard_values(mode, s, y)
     }
 
-    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; W] {
         self.0.guard_rates(mode, s, y)
     }
 
-    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G] {
+    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; W] {
         self.0.enclose_guards(mode, s, y)
     }
 

@@ -7,8 +7,10 @@ use stickslip_solver::dynamic::{
 };
 use stickslip_solver::{
     Dop853, Dopri5, Enclosure, Guard, HybridSystem, Method, Number, Observer, Options, Outcome,
-    RunError, Schedule, Start, State, SwitchEvent, run,
+    RunError, Schedule, Start, State, SwitchEvent,
 };
+
+use crate::erased::{self, run};
 
 /// A system of up to four components, three guards and some modes.
 pub trait Report {
@@ -261,7 +263,12 @@ fn one<M: Method + Copy, const READABLE: bool>(
     let mut events = Events::default();
     let start = DynamicStart { mode, s, state: &y };
     let name = format!("{method_name}, {kind} of any dimension");
-    let free = run_dynamic(method, form, start, end, options, &mut events).map(|run| {
+    let free = if READABLE {
+        run_dynamic(method, form, start, end, options, &mut events)
+    } else {
+        erased::run_dynamic(method, form, start, end, options, &mut events)
+    };
+    let free = free.map(|run| {
         let (name, y) = (name.clone(), four(&run.state));
         Ended { name, events, outcome: run.outcome, s: run.s, mode: run.mode, y }
     });

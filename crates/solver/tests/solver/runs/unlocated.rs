@@ -3,8 +3,10 @@
 use stickslip_solver::runs::run_over_switches;
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Options, Outcome, Recorder, RunError, Start,
-    State, StepSize, run,
+    State, StepSize,
 };
+
+use crate::erased::run;
 
 /// y' = 1 with one guard, which is a function of s and changes nothing.
 struct Planted(Direction, fn(f64) -> f64);

@@ -4,13 +4,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{Relays, ran, refused, switches, zero};
 use SurfaceSide::{Above, Below, Sliding};
-use stickslip_solver::dynamic::{DynamicStart, run_dynamic};
+use stickslip_solver::dynamic::DynamicStart;
 use stickslip_solver::sliding::{
     Filippov, Refusal, SampledFilippov, SurfaceSide, Switched, TwoFields,
 };
 use stickslip_solver::{Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State};
 
-use crate::erased::{run, run_backwards};
+use crate::erased::{run, run_backwards, run_dynamic};
 
 /// x′ = drift − gain·sgn(x).
 fn relay(drift: f64, gain: f64) -> Relays<1, 1> {
