@@ -31,7 +31,7 @@ impl<const ON_FIXED_STATES: bool> ReadableDynamic for Small<ON_FIXED_STATES> {
     const ON_FIXED_STATES: bool = ON_FIXED_STATES;
 
     fn most_guards(&self) -> usize {
-        self.guards(false).len()
+        ReadableDynamic::guards(self, false).len()
     }
     fn tolerances(&self) -> &[(f64, f64)] {
         match self {

@@ -16,7 +16,7 @@ fn equal_tolerances_of_components_change_nothing() {
     for pair in EmbeddedPair::ALL {
         let one = erased::run_with(pair, &ball, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ());
         let other = run_with(pair, &weighted, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ());
-        assert_eq!(one, other);
+        assert_eq!(erased::but_guards(one), erased::but_guards(other));
     }
     const { assert!(<Weighted<Wave, 1> as HybridSystem<1, 1>>::READABLE) };
 }
