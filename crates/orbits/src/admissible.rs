@@ -126,7 +126,7 @@ pub(crate) fn verdict(
         let expected: Vec<(usize, f64)> =
             (from..to).map(|i| (i % m, time(i) + draft.durations[i % m])).collect();
         let obstacle = |events: &[DynamicSwitch<usize>]| {
-            obstacle((system, *modes), draft, &expected, events).map(Verdict::Virtual)
+            obstacle((system, *modes), draft, (&expected, to), events).map(Verdict::Virtual)
         };
         let found = match own.record(EmbeddedPair::Dop853, middle(to), options) {
             Ok(found) => found,
@@ -169,11 +169,12 @@ fn later_clock(system: &System, draft: &Draft) -> Option<String> {
     Some(format!("rule `{name}` acts at times that are not those of the orbit"))
 }
 
-/// Where a run does not do what is expected: events of segments at times.
+/// Where a run does not do what is expected: events of segments at times, up to the middle of the
+/// segment `to`, which may be one of the next round.
 fn obstacle(
     (system, modes): (&System, usize),
     draft: &Draft,
-    expected: &[(usize, f64)],
+    (expected, to): (&[(usize, f64)], usize),
     events: &[DynamicSwitch<usize>],
 ) -> Option<Obstacle> {
     let away = AWAY * draft.period();
@@ -194,8 +195,10 @@ fn obstacle(
         }
         let rule = &system.modes[event.from].rules[event.guard];
         if !is_note(rule) {
-            let segment = next.map_or(0, |(segment, _)| segment);
-            return Some(Obstacle::Acts { segment, rule: event.guard, s: event.s });
+            let m = draft.legs.len();
+            let (segment, rounds) = next.map_or((to % m, to / m), |(segment, _)| (segment, 0));
+            let s = event.s - draft.period() * rounds as f64;
+            return Some(Obstacle::Acts { segment, rule: event.guard, s });
         }
     }
     expected.next().map(|(segment, _)| Obstacle::Idle { segment })

@@ -22,8 +22,8 @@ use crate::itinerary::{Leg, require_of};
 pub(crate) use event::{Event, EventFormulas, rate};
 use flow::Flown;
 pub(crate) use flow::{Flow, enlarge};
-use parts::{clock, is_held, ticks};
 pub(crate) use parts::{clock_values, is_apart};
+use parts::{clocks, is_held, ticks};
 
 /// A condition is zero if it is less than this part of what it is made of.
 const ZERO: f64 = 1e-9;
@@ -64,8 +64,8 @@ pub(crate) struct Equations {
     parameters: Vec<f64>,
     flows: Vec<Flow>,
     events: Vec<EventFormulas>,
-    /// The period of a clock and its derivatives by parameters, and how often it ticks.
-    clock: Option<(Program, f64)>,
+    /// The period of each clock and its derivatives by parameters, and how often it ticks.
+    clocks: Vec<(Program, f64)>,
     /// Components that need not come back, since nothing changes them or nothing else reads them,
     /// or that come back whatever their value is.
     apart: Vec<bool>,
@@ -114,7 +114,7 @@ impl Equations {
         let places: Vec<usize> = active.iter().map(|(place, _)| *place).collect();
         let graph = &mut graph;
         let ticks = ticks(system, &anchor)?;
-        let clock = clock(graph, system, &legs, &places)?;
+        let clocks = clocks(graph, system, &legs, &places)?;
         let flows = legs.iter().map(|leg| Flow::new(graph, system, leg.mode, &places));
         let flows: Vec<Flow> = flows.collect();
         let event = |(leg, tick): (&Leg, &Option<f64>)| {
@@ -138,7 +138,7 @@ impl Equations {
             parameters,
             flows,
             events,
-            clock,
+            clocks,
             apart,
             anchor,
             sizes,
@@ -303,7 +303,7 @@ impl Equations {
     fn close(&self, draft: &Draft, values: &mut DVector<f64>, slopes: &mut DMatrix<f64>) {
         let (states, count) = (self.legs.len() * self.n, self.count());
         let row = count - 1;
-        let Some((program, ticks)) = &self.clock else {
+        let Some((program, ticks)) = self.clocks.first() else {
             values[row] = draft.start - self.anchor.start;
             slopes[(row, row)] = 1.0;
             return;
@@ -329,7 +329,7 @@ impl Equations {
             own[(k, k)] += (factor - 1.0) * self.sizes[k] / self.rows[k];
         }
         let row = count - 1;
-        if self.clock.is_some() {
+        if !self.clocks.is_empty() {
             own[(row, row)] += (1.0 - factor) * self.sizes[row] / self.rows[row];
         }
         own
@@ -347,7 +347,7 @@ impl Equations {
         let moving: Vec<usize> = (0..n).filter(|k| !self.apart[*k]).collect();
         let product = product.select_rows(&moving).select_columns(&moving);
         let last = &ends.last()?.event.slopes_after;
-        let trivial = self.clock.is_none().then(|| last.select_rows(&moving));
+        let trivial = self.clocks.is_empty().then(|| last.select_rows(&moving));
         product.iter().all(|it| it.is_finite()).then_some((product, trivial))
     }
 
@@ -369,7 +369,8 @@ impl Equations {
         flown.map(|it| it.state).map_err(|error| OrbitError::Run { segment: i, error })
     }
 
-    /// Whether what depends on the time is the same one period later, at both ends of segments.
+    /// Whether what depends on the time is the same one period later, at both ends of segments, and
+    /// all clocks tick again.
     pub fn repeats(&self, draft: &Draft, ends: &[End]) -> bool {
         let (period, starts) = (draft.period(), draft.starts());
         let sizes = &self.sizes.as_slice()[..self.n];
@@ -377,11 +378,17 @@ impl Equations {
             let at = |s: f64| self.events[i].at(&draft.parameters, s, state);
             at(s).is_like(&at(s + period), sizes, period)
         };
-        self.clock.is_none()
-            || (0..self.legs.len()).all(|i| {
-                is_same(i, starts[i], &draft.states[i])
-                    && is_same(i, starts[i] + draft.durations[i], &ends[i].flown.state)
-            })
+        let ticks_again = |(program, ticks): &(Program, f64)| {
+            let mut own = vec![f64::NAN; 1 + self.active.len()];
+            program.with(&draft.parameters).run(f64::NAN, &[], &mut own);
+            (period - ticks * own[0]).abs() <= ZERO * period
+        };
+        self.clocks.is_empty()
+            || self.clocks.iter().all(ticks_again)
+                && (0..self.legs.len()).all(|i| {
+                    is_same(i, starts[i], &draft.states[i])
+                        && is_same(i, starts[i] + draft.durations[i], &ends[i].flown.state)
+                })
     }
 
     /// Gives each equation its size, and refuses conditions that nothing moves.

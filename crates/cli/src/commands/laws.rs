@@ -105,10 +105,16 @@ fn restitutions(name: Option<&str>, e_n: f64, format: Format) -> Result<(), Fail
     let names = name.map_or_else(|| damped.map(|preset| preset.name).collect(), |it| vec![it]);
     let mut found = Vec::new();
     for name in names {
-        let refused = |error| Failure::Usage(format!("--e-n with the law {name}: {error}"));
-        if let Some(restitution) = restitution::of(name, e_n).map_err(refused)? {
-            found.push(OfLaw { name, restitution });
-        }
+        let (restitution, refused) = match restitution::of(name, e_n) {
+            Ok(restitution) => (restitution, None),
+            Err(error) => (None, Some(error.to_string())),
+        };
+        found.push(OfLaw { name, restitution, refused });
+    }
+    if let [OfLaw { name, refused: Some(error), .. }, others @ ..] = &found[..]
+        && others.iter().all(|it| it.refused.is_some())
+    {
+        return Err(Failure::Usage(format!("--e-n with the law {name}: {error}")));
     }
     print(|out| match format {
         Format::Json if name.is_some() => json::lines(out, &found.first()),
@@ -116,7 +122,12 @@ fn restitutions(name: Option<&str>, e_n: f64, format: Format) -> Result<(), Fail
         Format::Table => {
             let title = format!("e_n = {e_n}");
             writeln!(out, "{title:<46} {:>9} {:>9}  keyword: e_n reached", "damping a", "ratio ζ")?;
-            for OfLaw { name, restitution } in &found {
+            for OfLaw { name, restitution, refused } in &found {
+                let Some(restitution) = restitution else {
+                    let reason = refused.as_deref().unwrap_or_default();
+                    writeln!(out, "{name:<46} {:>9} {:>9}  {reason}", "", "")?;
+                    continue;
+                };
                 let ratio = restitution.critical_damping_ratio;
                 let ratio = ratio.map_or_else(String::new, |ratio| format!("{ratio:.6}"));
                 let reached = |it: &Keyword| format!("{}: {:.4}", it.keyword, it.e_n);
@@ -135,7 +146,10 @@ fn restitutions(name: Option<&str>, e_n: f64, format: Format) -> Result<(), Fail
 struct OfLaw<'a> {
     name: &'a str,
     #[serde(flatten)]
-    restitution: Restitution,
+    restitution: Option<Restitution>,
+    /// Why the law has no such damping.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refused: Option<String>,
 }
 
 /// The window and the dampings of the maps.

@@ -245,12 +245,19 @@ fn estimates_follow_the_results() {
 
 #[test]
 fn terms_of_the_law_are_no_columns() {
-    for term in ["dynamic_friction", "friction_decay", "pull_off"] {
+    for term in ["dynamic_friction", "friction_decay", "pull_off", "pull-off", "LAW"] {
         let workspace = Workspace::with_input(&format!("kappa,psi,{term}\n18,1,0.5\n"));
         let ran = workspace.run("collide --batch in.csv --out o");
         assert_eq!(ran.code, 2);
-        let option = format!("expected --{}", term.replace('_', "-"));
+        let option = format!("expected --{}", term.replace('_', "-").to_lowercase());
         assert!(ran.stderr.contains(&option), "{}", ran.stderr);
+    }
+    for (name, own) in [("E-N", "e_n"), ("tangential-damping", "tangential_damping")] {
+        let workspace = Workspace::with_input(&format!("kappa,psi,{name}\n18,1,0.5\n"));
+        let ran = workspace.run("collide --batch in.csv --out o");
+        assert_eq!(ran.code, 2);
+        let said = format!("column {name} is not read; expected {own}, or another name");
+        assert!(ran.stderr.contains(&said), "{}", ran.stderr);
     }
 }
 

@@ -114,31 +114,34 @@ pub(crate) fn clock_values(
     Ok(values)
 }
 
-/// The period of a clock of the itinerary with its derivatives, and how often it ticks.
-pub(super) fn clock(
+/// The clocks of the itinerary: the period of each with its derivatives, and how often it ticks.
+pub(super) fn clocks(
     graph: &mut Graph,
     system: &System,
     legs: &[Leg],
     active: &[usize],
-) -> Result<Option<(Program, f64)>, OrbitError> {
-    let periods = legs.iter().filter_map(|leg| match leg.rule(system).trigger {
-        Trigger::Every { period, .. } => Some(period),
+) -> Result<Vec<(Program, f64)>, OrbitError> {
+    let ticks = legs.iter().filter_map(|leg| match leg.rule(system).trigger {
+        Trigger::Every { period, phase } => Some((period, phase)),
         _ => None,
     });
-    let periods: Vec<Formula> = periods.collect();
-    let Some(&period) = periods.first() else {
+    let ticks: Vec<(Formula, Formula)> = ticks.collect();
+    if ticks.is_empty() {
         let explicit = legs.iter().any(|leg| reads_time(system, *leg));
         let expected = "a rule `every …` among the itinerary, whose period is that of what depends \
                         on the time";
         let found = GivenValue::Phrase("has no clock, and equations depend on the time".into());
         InvalidValue::check("itinerary", found, expected, !explicit)?;
-        return Ok(None);
-    };
-    let mut formulas = vec![period];
-    formulas.extend(by_each(graph, period, 0, active).into_iter().skip(1));
+    }
     let inputs = Inputs { components: 0, parameters: system.parameters.len(), fixed: true };
-    let ticks = periods.iter().filter(|it| **it == period).count();
-    Ok(Some((Program::compile(graph, &formulas, inputs), ticks as f64)))
+    let is_first = |(place, own): &(usize, &(Formula, Formula))| !ticks[..*place].contains(own);
+    let clocks = ticks.iter().enumerate().filter(is_first).map(|(_, own)| {
+        let mut formulas = vec![own.0];
+        formulas.extend(by_each(graph, own.0, 0, active).into_iter().skip(1));
+        let count = ticks.iter().filter(|it| *it == own).count();
+        (Program::compile(graph, &formulas, inputs), count as f64)
+    });
+    Ok(clocks.collect())
 }
 
 /// Whether a segment depends on the time.

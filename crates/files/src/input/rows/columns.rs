@@ -40,7 +40,7 @@ impl Columns {
     ];
 
     /// What only options give, and a column would not change.
-    const TERMS: [&str; 3] = ["dynamic_friction", "friction_decay", "pull_off"];
+    const TERMS: [&str; 4] = ["law", "dynamic_friction", "friction_decay", "pull_off"];
 
     /// The columns of a file of points (κ, ψ) that are located in an atlas.
     pub const POINTS: Self =
@@ -52,13 +52,8 @@ impl Columns {
     /// What is wrong with the columns, and what is expected.
     pub fn recipe(&self, header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
         let names = names(header, self.results, "kappa,psi")?;
-        let term = Self::TERMS.iter().find(|term| names.contains(&term.as_bytes()));
-        if let Some(term) = term.filter(|_| self.options) {
-            return Err(format!(
-                "column {term} is part of the law, which all rows share; expected --{}, or another \
-                 name",
-                term.replace('_', "-")
-            ));
+        if self.options {
+            names.iter().try_for_each(|name| self.require_foreign(name))?;
         }
         let column = |parameter: Parameter| {
             let place = names.iter().position(|name| *name == parameter.name().as_bytes());
@@ -73,6 +68,26 @@ impl Columns {
             let names = names.join(&b", "[..]);
             format!("{problem}; the columns are: {}", String::from_utf8_lossy(&names))
         })
+    }
+}
+
+impl Columns {
+    /// Refuses the name of a column that looks as if it should be read.
+    fn require_foreign(&self, name: &[u8]) -> Result<(), String> {
+        let name = String::from_utf8_lossy(name);
+        let plain = name.to_ascii_lowercase().replace(['-', ' '], "_");
+        if Self::TERMS.contains(&&*plain) {
+            return Err(format!(
+                "column {name} is part of the law, which all rows share; expected --{}, or another \
+                 name",
+                plain.replace('_', "-")
+            ));
+        }
+        let own = self.parameters.iter().map(|parameter| parameter.name());
+        match own.into_iter().find(|own| plain == *own && name != *own) {
+            Some(own) => Err(format!("column {name} is not read; expected {own}, or another name")),
+            None => Ok(()),
+        }
     }
 }
 
