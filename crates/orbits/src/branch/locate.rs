@@ -9,6 +9,11 @@ use crate::error::OrbitError;
 const NARROW: f64 = 1e-13;
 /// A fold so near a branch point, in parts of a step, is that branch point.
 const BESIDE: f64 = 1e-3;
+/// So is a fold at so nearly the same parameter, in parts of its range: where branches meet, the
+/// parameter may stand still.
+const SAME: f64 = 1e-8;
+/// What is left of a function at its zero, at most, of its values at both points. Otherwise it jumps.
+const JUMP: f64 = 1e-6;
 /// The greatest number of points of a search.
 const ROUNDS: usize = 100;
 
@@ -17,6 +22,7 @@ impl Along<'_> {
     pub fn specials(&self, from: &Point, to: &Point) -> Result<Vec<SpecialOrbit>, OrbitError> {
         let length = from.tangent.dot(&(&to.place - &from.place));
         let mut found: Vec<(f64, SpecialOrbit)> = Vec::new();
+        let mut meeting: Option<(f64, Point)> = None;
         for test in Test::all(self, from) {
             let values = (test.value(self, from), test.value(self, to));
             let (Some(one), Some(other)) = values else { continue };
@@ -25,8 +31,15 @@ impl Along<'_> {
                 continue;
             }
             let value = |point: &Point| test.value(self, point);
+            if let Test::BranchPoint(_) = test {
+                meeting = self.meeting(from, length, one / (one - other)).ok();
+            }
+            // Beside a branch point others are inaccurate, and a rate may be zero there too.
+            let size = JUMP * one.abs().max(other.abs());
+            let is_zero = |point: &Point| value(point).is_some_and(|value| value.abs() <= size);
             let meets = match test {
-                Test::BranchPoint(_) => self.meeting(from, length, one / (one - other)).ok(),
+                Test::BranchPoint(_) => meeting.clone(),
+                Test::Rate(_) => meeting.clone().filter(|(_, point)| is_zero(point)),
                 _ => None,
             };
             let zero = match meets {
@@ -43,8 +56,12 @@ impl Along<'_> {
             if matches!(test, Test::Flip(_)) && point.orbit.multipliers.is_none() {
                 continue;
             }
-            let meets = found.iter().any(|(other, _)| (at - other).abs() <= BESIDE * length);
-            if matches!(test, Test::Fold) && meets {
+            let [low, high] = self.range;
+            let same = |(other, special): &(f64, SpecialOrbit)| {
+                let apart = (special.value - self.value(&point.place)).abs();
+                (at - other).abs() <= BESIDE * length || apart <= SAME * (high - low)
+            };
+            if matches!(test, Test::Fold) && found.iter().any(same) {
                 continue;
             }
             if let Some((kind, segment)) = test.kind(self, from, &point) {
@@ -86,20 +103,21 @@ impl Along<'_> {
 
 /// Where a function changes its sign from `one` to `other` within a length, with what it is
 /// computed from: by false position in the manner of Illinois. `None` if the function ceases
-/// between.
+/// between, or jumps.
 pub(super) fn zero<T>(
     (length, one, other): (f64, f64, f64),
     mut function: impl FnMut(f64) -> Result<Option<(f64, T)>, OrbitError>,
 ) -> Result<Option<(f64, T)>, OrbitError> {
     let (mut low, mut high) = ((0.0, one), (length, other));
+    let most = JUMP * one.abs().max(other.abs());
     let mut side = 0;
-    let mut last: Option<(f64, T)> = None;
+    let mut last: Option<(f64, f64, T)> = None;
     for _ in 0..ROUNDS {
         let part = low.1 / (low.1 - high.1);
         let part = if part > 0.0 && part < 1.0 { part } else { 0.5 };
         let at = low.0 + part * (high.0 - low.0);
         let Some((value, found)) = function(at)? else { return Ok(None) };
-        let before = last.replace((at, found)).map(|(at, _)| at);
+        let before = last.replace((at, value, found)).map(|(at, ..)| at);
         let stays = before.is_some_and(|before| (at - before).abs() <= NARROW * length);
         if value == 0.0 || stays || (high.0 - low.0).abs() <= NARROW * length {
             break;
@@ -118,5 +136,5 @@ pub(super) fn zero<T>(
             side = 1;
         }
     }
-    Ok(last)
+    Ok(last.filter(|(_, value, _)| value.abs() <= most).map(|(at, _, found)| (at, found)))
 }

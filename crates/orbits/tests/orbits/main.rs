@@ -13,3 +13,4 @@ mod refused;
 mod regions;
 mod resumed;
 mod sliding;
+mod strangers;

@@ -10,8 +10,8 @@ use crate::orbit::Obstacle;
 
 /// Conditions below this part of their largest value on a segment are zero by themselves.
 const ZERO: f64 = 1e-9;
-/// What is left of a function at its zero, at most, of its values at both stations.
-const JUMP: f64 = 1e-6;
+/// Two zeros of one kind so near each other, in parts of a step, are one.
+const BESIDE: f64 = 0.01;
 
 /// A meeting that was located.
 pub(super) struct Met {
@@ -75,11 +75,6 @@ impl Follower<'_> {
                 Ok(self.sought_value(&sought, from, &station).map(|value| (value, station)))
             })?;
             let Some((at, station)) = place else { continue };
-            // A margin may jump where its extremum ceases.
-            let left = self.sought_value(&sought, from, &station).map_or(0.0, f64::abs);
-            if left > JUMP * one.abs().max(other.abs()) {
-                continue;
-            }
             let (kind, segment) = match &sought {
                 Sought::Test(SpecialKind::NeimarkSacker, ..)
                     if !matches!(self.special.kind, SpecialKind::Fold | SpecialKind::Flip)
@@ -101,7 +96,13 @@ impl Follower<'_> {
                     (SpecialKind::Cusp, None)
                 }
             };
-            found.push((at, Met { kind, segment, station }));
+            // The least extremum of a condition is zero where its rate at the event is.
+            let same = |(other, met): &(f64, Met)| {
+                (met.kind, met.segment) == (kind, segment) && (at - other).abs() <= BESIDE * length
+            };
+            if matches!(sought, Sought::Test(..)) || !found.iter().any(same) {
+                found.push((at, Met { kind, segment, station }));
+            }
         }
         found.sort_by(|one, other| one.0.total_cmp(&other.0));
         Ok(found.into_iter().map(|(_, met)| met).collect())
