@@ -241,7 +241,7 @@ tangential velocity are also divided by μ/α. Numbers are written like 18, 1.5e
 const EXAMPLES: &str = "\
 Batch files:
   The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping, e_n,
-  tangential_damping;  the options of the same names give what the file does not. Other columns pass through. OUT.csv
+  tangential_damping; the options of the same names give what the file does not. Other columns pass through. OUT.csv
   has the columns of the input followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
   cannot be computed has no results; its status says why, and the exit code is 1. Bodies that stay together by
   adhesion have no restitution, and the status adheres.

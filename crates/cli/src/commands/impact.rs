@@ -327,7 +327,8 @@ Other laws have other constants in \"surface\", beside \"friction\":
   Mindlin's k_t          mindlin_stiffness_kg_per_s2_m0_5, or that of the materials
   damping                damping_coefficient in kg/(s m^e), e = 0, 1/2, 1/4 as the law says; or
                          damping_time_s (viscoelastic with Hertz; both linear), or damping_ratio
-                         without unit (Tsuji with Hertz; both linear)
+                         without unit (Tsuji with Hertz; both linear), or critical_damping_ratio;
+                         or e_n, with e_n_at_m_per_s where it depends on the velocity
   hysteretic force       unloading_stiffness_ratio, k2/k1, 1 or above
   hardening              hardening_per_m, (k2/k1 - 1)/(greatest overlap)
   yielding               yield_velocity_m_per_s, or yield_pressure_pa of the contact

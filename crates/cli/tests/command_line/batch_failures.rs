@@ -19,7 +19,7 @@ fn refused(input: &str, options: &str, parts: &[&str]) {
 #[test]
 fn headers_that_do_not_make_a_collision() {
     refused("psi\n1\n", "", &["kappa", "--kappa", "columns are: psi"]);
-    refused("Kappa,psi\n1,1\n", "", &["kappa is missing", "Kappa, psi"]);
+    refused("Kappa,psi\n1,1\n", "", &["column Kappa is not read", "expected kappa"]);
     refused("kappa;psi\n1;1\n", "", &["kappa is missing", "kappa;psi"]);
     refused("kappa\n1\n", "", &["psi and ratio are missing", "exactly one"]);
     refused("kappa,psi,ratio\n1,1,1\n", "", &["psi and ratio are both given", "exactly one"]);

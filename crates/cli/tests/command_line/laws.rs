@@ -57,6 +57,15 @@ fn restitution_is_an_input() {
     let refused = stickslip(undamped);
     assert_eq!(refused.code, 2);
     assert!(refused.stderr.contains("no damping of this law has e_n = 0.5"), "{}", refused.stderr);
+
+    // A law that cannot lose so much hides no other one.
+    let all = stickslip("laws --e-n 0.1");
+    let line = |name: &str| all.stdout.lines().find(|line| line.starts_with(name)).expect("a law");
+    assert_eq!(all.code, 0, "{}", all.stderr);
+    assert!(line("thornton").contains("no damping of this law has e_n = 0.1"), "{}", all.stdout);
+    assert!(line("gran/hooke/history").contains("1.182310"), "{}", all.stdout);
+    let refused = stickslip("laws --e-n 2");
+    assert!(refused.code == 2 && refused.stdout.is_empty(), "{}", refused.stdout);
 }
 
 /// Laws that are not computed say so by their names.
