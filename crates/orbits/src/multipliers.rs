@@ -4,8 +4,8 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use crate::spaces::range;
 
-/// What is below this part of the largest is 0: the matrix loses a dimension exactly where a segment
-/// slides or all states are reset to one.
+/// What is below this part of the largest is 0: the matrix loses a dimension exactly where a
+/// segment slides or all states are reset to one.
 const RANK: f64 = 1e-14;
 /// How far sums of eigenvalues may be off, as a part of the size of the matrix.
 const SUM: f64 = 1e-9;

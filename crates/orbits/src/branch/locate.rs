@@ -12,7 +12,8 @@ const BESIDE: f64 = 1e-3;
 /// So is a fold at so nearly the same parameter, in parts of its range: where branches meet, the
 /// parameter may stand still.
 const SAME: f64 = 1e-8;
-/// What is left of a function at its zero, at most, of its values at both points. Otherwise it jumps.
+/// What is left of a function at its zero, at most, of its values at both points. Otherwise it
+/// jumps.
 const JUMP: f64 = 1e-6;
 /// The greatest number of points of a search.
 const ROUNDS: usize = 100;

@@ -173,8 +173,8 @@ pub fn margin<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
     with_system!(system => stickslip_solver::margin::margin(method, system, start, end, options, margin))
 }
 
-/// A run without the number of evaluations of guards: of several they may be a few more than of one,
-/// though the others are off.
+/// A run without the number of evaluations of guards: of several they may be a few more than of
+/// one, though the others are off.
 pub fn but_guards<Mode, const N: usize>(
     run: Result<Run<Mode, N>, RunError>,
 ) -> Result<Run<Mode, N>, RunError> {
