@@ -51,6 +51,7 @@ pub fn find(name: &str) -> Option<Preset> {
 /// use stickslip_contact::presets;
 ///
 /// assert!(presets::refusal("liggghts/sjkr").is_some_and(|why| why.starts_with("this adhesion")));
+/// assert!(presets::refusal("luding").is_some_and(|why| why.contains("walton-braun/hardening")));
 /// assert_eq!(presets::refusal("gran/hooke/history"), None);
 /// ```
 pub fn refusal(name: &str) -> Option<&'static str> {
@@ -62,7 +63,10 @@ pub fn refusal(name: &str) -> Option<&'static str> {
                            by μ_r/μ of what sliding does";
     const PLASTIC: &str = "this plasticity is not computed, but thornton, walton-braun and \
                            walton-braun/hardening are";
-    const KNOWN: [(&str, &str); 14] = [
+    const HYSTERETIC: &str = "it has another name: walton-braun, with the stiffness ratio k₂/k₁ of the \
+                              loading and the unloading branch, or walton-braun/hardening, where \
+                              it grows with the overlap";
+    const KNOWN: [(&str, &str); 16] = [
         ("sjkr", ADHESION),
         ("jkr", ADHESION),
         ("dmt", ADHESION),
@@ -74,6 +78,8 @@ pub fn refusal(name: &str) -> Option<&'static str> {
         ("epsd", ROLLING),
         ("cdt", ROLLING),
         ("marshall", ROLLING),
+        ("luding", HYSTERETIC),
+        ("hysteresis", HYSTERETIC),
         ("thornton", PLASTIC),
         ("elastoplastic", PLASTIC),
         ("mdr", PLASTIC),

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write};
 
 use stickslip_model::spheres::Surface;
-use stickslip_model::{InvalidValue, Law};
+use stickslip_model::{InvalidValue, Law, presets};
 use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{ACROSS, ALONG};
@@ -194,7 +194,9 @@ impl RestitutionTable {
         let source = if law == Law::PAPER {
             "(Schwager, Becker and Poeschel, Eur. Phys. J. E\n * 27, 107, 2008)".to_owned()
         } else {
-            format!("with {law:?}\n * and the tangential damping {tangential_damping:?},")
+            let named = presets::ALL.iter().find(|preset| preset.law == law);
+            let name = named.map_or_else(|| law.equations(), |preset| preset.name.to_owned());
+            format!("with the law\n * {name} and the tangential damping {tangential_damping:?},")
         };
         let TableVerification { points, largest_error, .. } = self.verification;
         format!(

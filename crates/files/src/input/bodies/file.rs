@@ -358,6 +358,10 @@ impl SurfaceFields {
                 damping_time_s: number(&quantity::DAMPING_TIME, &self.damping_time_s)?,
             }));
         }
-        Forces::new(law, &constants).map_err(|invalid| format!("surface.{invalid}"))
+        Forces::new(law, &constants).map_err(|invalid| {
+            let text = invalid.to_string();
+            // What is wrong with the law is no field.
+            if text.starts_with("the law") { text } else { format!("surface.{text}") }
+        })
     }
 }
