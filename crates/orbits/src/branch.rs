@@ -167,6 +167,8 @@ impl SpecialKind {
 
 /// What is said of a change between two points of a branch that is not found.
 const NOT_LOCATED: &str = "is not located";
+/// Steps are divided down to this length where several multipliers pass the unit circle.
+const TOGETHER: f64 = 1e-4;
 
 /// One end of a branch or a curve, or both together. What is special has the number of points
 /// before it.
@@ -323,8 +325,20 @@ impl Orbits {
                 }
             };
             let turn = last.tangent.dot(&next.tangent);
+            let found = along.specials(&last, &next);
+            if let Ok(found) = &found
+                && locate::passes_unseen(&last.orbit, &next.orbit, found)
+            {
+                let length = last.tangent.dot(&(&next.place - &last.place));
+                if length > TOGETHER {
+                    step = 0.5 * length;
+                    continue;
+                }
+                let at = self.at(along, &last);
+                half.object(format!("several multipliers pass the unit circle at once near {at}"));
+            }
             half.closed = half.points.len() >= soonest && last.passes(&next, closes);
-            match along.specials(&last, &next) {
+            match found {
                 Ok(found) => {
                     let behind = half.points.len() + 1;
                     let found = found.into_iter();

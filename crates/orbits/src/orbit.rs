@@ -118,6 +118,13 @@ impl Orbit {
         self.multipliers.as_ref().is_some_and(|all| all.iter().all(inside))
     }
 
+    /// How many multipliers are larger than 1 in size, at least and at most; `None` at a graze.
+    pub(crate) fn outside(&self) -> Option<[usize; 2]> {
+        let all = self.multipliers.as_ref()?;
+        let beyond = |least: f64| all.iter().filter(|[re, im]| re.hypot(*im) > least).count();
+        Some([beyond(1.0 + NEUTRAL), beyond(1.0 - NEUTRAL)])
+    }
+
     /// The largest size of a multiplier; infinite at a graze.
     #[must_use]
     pub fn largest_multiplier(&self) -> f64 {

@@ -4,6 +4,7 @@ use super::point::{Along, Point};
 use super::test::Test;
 use super::{SpecialKind, SpecialOrbit};
 use crate::error::OrbitError;
+use crate::orbit::Orbit;
 
 /// A bracket of this part of a step is a place.
 const NARROW: f64 = 1e-13;
@@ -100,6 +101,19 @@ impl Along<'_> {
             Ok(function(&point).map(|value| (value, point)))
         })
     }
+}
+
+/// Whether more multipliers pass the unit circle between two neighbours than the special orbits that
+/// were found explain. Where something happens at a segment, multipliers may jump.
+pub(super) fn passes_unseen(from: &Orbit, to: &Orbit, found: &[SpecialOrbit]) -> bool {
+    let (Some(before), Some(behind)) = (from.outside(), to.outside()) else { return false };
+    let passed = behind[0].saturating_sub(before[1]).max(before[0].saturating_sub(behind[1]));
+    let explained = found.iter().map(|special| match special.kind {
+        SpecialKind::Fold | SpecialKind::Flip | SpecialKind::BranchPoint => 1,
+        SpecialKind::NeimarkSacker => 2,
+        _ => usize::MAX,
+    });
+    passed > explained.fold(0, usize::saturating_add)
 }
 
 /// Where a function changes its sign from `one` to `other` within a length, with what it is

@@ -89,3 +89,23 @@ fn a_branch_point_at_the_edge_of_sliding() {
         assert!(near, "{kind:?} {found:?}");
     }
 }
+
+/// Multipliers −1 − p and −1 − 2(p − g), each with a flip of its own.
+#[test]
+fn two_flips_in_one_step() {
+    let text = "parameter p = -0.4, g = 0.001\nstate x = 0.2, y = 0.2, s = 0\nx' = 0\ny' = 0\n\
+                s' = 1\nwhen s > 1 \"tick\"\n  s := 0\n  x := (-1 - p)*x + 1\n  y := (-1 - \
+                2*(p - g))*y + x\nend = 20";
+    let own = orbits(text);
+    for g in [0.1, 0.001] {
+        let branch = along(&own, (&[-0.4, g], 0), &["tick"], [-0.7, 0.7]);
+        let mut found = values(&branch, SpecialKind::Flip);
+        found.sort_by(f64::total_cmp);
+        assert_eq!((found.len(), &branch.objection), (2, &None), "{g}: {found:?}");
+        assert!(found[0].abs() < 1e-10 && (found[1] - g).abs() < 1e-10, "{found:?}");
+    }
+    // At once they are not told apart, and the branch says so.
+    let branch = along(&own, (&[-0.4, 0.0], 0), &["tick"], [-0.7, 0.7]);
+    let objection = branch.objection.expect("an objection");
+    assert!(objection.contains("several multipliers pass the unit circle"), "{objection}");
+}
