@@ -103,8 +103,8 @@ impl Along<'_> {
     }
 }
 
-/// Whether more multipliers pass the unit circle between two neighbours than the special orbits that
-/// were found explain. Where something happens at a segment, multipliers may jump.
+/// Whether more multipliers pass the unit circle between two neighbours than the special orbits
+/// that were found explain. Where something happens at a segment, multipliers may jump.
 pub(super) fn passes_unseen(from: &Orbit, to: &Orbit, found: &[SpecialOrbit]) -> bool {
     let (Some(before), Some(behind)) = (from.outside(), to.outside()) else { return false };
     let passed = behind[0].saturating_sub(before[1]).max(before[0].saturating_sub(behind[1]));
