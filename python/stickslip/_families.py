@@ -53,6 +53,7 @@ from stickslip._hybrid import MOST_RECORDED, _arguments, _callee, _Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from stickslip._orbits import Branch, Orbit, SpecialCurve, SpecialOrbit
 
 __all__ = [
     "FamilyAtlas",
@@ -221,6 +222,7 @@ class HybridFamily:
                     for what, function in (("reset", guard.reset), ("condition", guard.condition)):
                         _check_parameters(function, f"the {what} of guard {guard.name!r}")
         self._told = max_switches
+        self._given: tuple[FormulaSystem, tuple[str, str], dict[str, float]] | None = None
         most = (MOST_SWITCHES if max_switches is None else max_switches, MOST_STEPS)
         settings = settings_of("dop853", (rtol, atol), (max_step, first_step), most)
         settings["guard_scale"] = (
@@ -377,6 +379,7 @@ class HybridFamily:
         )
         family.guards = tuple(family._native.guards())
         family.reason, family._recorded = None, None
+        family._given = (system, (x, y), dict(parameters or {}))
         return family
 
     def __reduce__(self) -> Any:
@@ -476,6 +479,71 @@ class HybridFamily:
             values=values,
             zeros=tuple(MonitorZero(*zero) for zero in found["zeros"]),
         )
+
+    def _system(self) -> tuple[FormulaSystem, tuple[str, str], dict[str, float]]:
+        """The formulas of the runs, the names of x and y there, and the values of others."""
+        if self._given is not None:
+            return self._given
+        if self._recorded is None:
+            raise ValueError(f"orbits need functions that can be recorded, but {self.reason}")
+        return self._recorded.system, ("p", "q"), {}
+
+    def orbit(
+        self,
+        x: float,
+        y: float,
+        *,
+        itinerary: Sequence[str] | None = None,
+        start: ArrayLike | None = None,
+        mode: str | None = None,
+        time: float | None = None,
+        durations: ArrayLike | None = None,
+        settle: float | None = None,
+        near: Orbit | None = None,
+        progress: Progress | None = None,
+    ) -> Orbit:
+        """The periodic orbit with the parameters x and y, as `FormulaSystem.orbit` finds it.
+
+        itinerary: names of guards. Raises ValueError if functions are not recorded.
+        """
+        system, names, values = self._system()
+        both = {names[0]: _number(x, "x"), names[1]: _number(y, "y")}
+        return system.orbit(
+            itinerary=itinerary, start=start, mode=mode, time=time, durations=durations,
+            settle=settle, near=near, parameters={**values, **both}, progress=progress,
+        )  # fmt: skip
+
+    def branch(
+        self,
+        orbit: Orbit,
+        axis: str,
+        interval: tuple[float, float],
+        *,
+        longest_step: float = 0.05,
+        most_points: int = 2000,
+        progress: Progress | None = None,
+    ) -> Branch:
+        """The branch of an orbit over one of `axes`, as `FormulaSystem.branch` follows it."""
+        system, names, _ = self._system()
+        if axis not in self.axes:
+            raise ValueError(f"axis = {axis!r}; expected one of {', '.join(self.axes)}")
+        return system.branch(
+            orbit, names[self.axes.index(axis)], interval,
+            longest_step=longest_step, most_points=most_points, progress=progress,
+        )  # fmt: skip
+
+    def curve(
+        self,
+        special: SpecialOrbit,
+        x: tuple[float, float],
+        y: tuple[float, float],
+        *,
+        longest_step: float = 0.05,
+        progress: Progress | None = None,
+    ) -> SpecialCurve:
+        """The curve of a special orbit in a window, as `FormulaSystem.curve` follows it."""
+        system, names, _ = self._system()
+        return system.curve(special, names, x, y, longest_step=longest_step, progress=progress)
 
     def __repr__(self) -> str:
         return f"HybridFamily({self.name!r}, axes: {self.axes}, guards: {self.guards})"

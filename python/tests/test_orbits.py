@@ -183,6 +183,44 @@ def test_functions_have_orbits_too() -> None:
     assert orbit.multipliers.tolist() == [0.0]
 
 
+def impacts(record: bool | None = None) -> stickslip.HybridFamily:
+    """A driven oscillator with a wall, over the amplitude and the frequency of its force."""
+    system = stickslip.HybridSystem()
+    force = lambda y, a, w: a * np.cos(y[2]) - y[0] - 0.1 * y[1]  # noqa: E731
+    free = system.mode("free", lambda t, y, a, w: [y[1], force(y, a, w), w])
+    hit = lambda t, y, a, w: [1.0, -0.8 * y[1], y[2]]  # noqa: E731
+    again = lambda t, y, a, w: [y[0], y[1], y[2] - 2 * np.pi]  # noqa: E731
+    free.guard("impact", lambda t, y, a, w: 1.0 - y[0], reset=hit)
+    free.guard("phase", lambda t, y, a, w: np.pi - y[2], reset=again)
+    start, most = [-0.98, -0.29, -np.pi], 20
+    return stickslip.HybridFamily(
+        system, (0.0, 60.0), start, axes=("A", "w"), max_switches=most, record=record
+    )
+
+
+def test_families_have_orbits() -> None:
+    text = (Path(__file__).parents[2] / "examples/orbits/oscillator.slip").read_text()
+    of_text = stickslip.HybridFamily.of(stickslip.system(text), "a", "w", parameters={"e": 0.8})
+    for family in (impacts(), of_text):
+        around = ("impact", "phase")
+        orbit = family.orbit(1.0, 1.0, start=[-0.98, -0.29, -math.pi], itinerary=around)
+        assert abs(orbit.period - 2 * math.pi) < 1e-12 and orbit.admissible
+        assert orbit.multipliers is not None
+        assert abs(orbit.multipliers[0] + 0.58429531 - 0.00560035j) < 1e-8
+        slower = family.orbit(1.0, 0.8, itinerary=around)
+        branch = family.branch(slower, family.axes[0], (0.05, 1.2))
+        graze = next(it for it in branch.specials if it.kind == "grazing")
+        assert abs(graze.value - 0.368781778292) < 1e-10
+        curve = family.curve(graze, (0.02, 1.0), (0.6, 1.4))
+        for point in curve.points:
+            a, w = (point.parameters[name] for name in curve.parameters)
+            assert abs(a - math.hypot(1 - w**2, 0.1 * w)) < 1e-11
+        with pytest.raises(ValueError, match="axis = 'p'; expected one of"):
+            family.branch(slower, "p", (0.0, 1.0))
+    with pytest.raises(ValueError, match="functions that can be recorded, but record = False"):
+        impacts(record=False).orbit(1.0, 1.0, itinerary=["impact", "phase"])
+
+
 def test_what_cannot_be_is_refused() -> None:
     ball = stickslip.system(BALL)
     with pytest.raises(ValueError, match="none given; expected one of itinerary, settle and near"):
