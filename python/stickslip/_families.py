@@ -506,6 +506,7 @@ class HybridFamily:
 
         itinerary: names of guards. Raises ValueError if functions are not recorded.
         """
+        self._compare(x, y)
         system, names, values = self._system()
         both = {names[0]: _number(x, "x"), names[1]: _number(y, "y")}
         return system.orbit(

@@ -1,9 +1,10 @@
 //! Systems as text: read, written and formatted.
 //!
 //! `tokens` divides a text into words and signs, and `reader` goes through them. `formula` reads
-//! formulas, `rules` what happens when, and `statements` the rest. `print` writes a system, under
-//! names that are `readable`, and `format` a text in its usual form.
+//! formulas, `condition` what is true or not, `rules` what happens when, and `statements` the rest.
+//! `print` writes a system, under names that are `readable`, and `format` a text in its usual form.
 
+mod condition;
 mod format;
 mod formula;
 mod names;

@@ -308,8 +308,7 @@ impl Equations {
             slopes[(row, row)] = 1.0;
             return;
         };
-        let mut period = vec![f64::NAN; 1 + self.active.len()];
-        program.with(&draft.parameters).run(f64::NAN, &[], &mut period);
+        let period = self.period(program, &draft.parameters);
         values[row] = draft.period() - ticks * period[0];
         for i in 0..self.legs.len() {
             slopes[(row, states + i)] = 1.0;
@@ -317,6 +316,13 @@ impl Equations {
         for (parameter, by) in period[1..].iter().enumerate() {
             slopes[(row, count + parameter)] = -ticks * by;
         }
+    }
+
+    /// The period of a clock, and its derivatives by the unknown parameters.
+    fn period(&self, clock: &Program, parameters: &[f64]) -> Vec<f64> {
+        let mut period = vec![f64::NAN; 1 + self.active.len()];
+        clock.with(parameters).run(f64::NAN, &[], &mut period);
+        period
     }
 
     /// The derivatives by the unknowns for a solution that comes back `factor` times as large: they
@@ -379,9 +385,8 @@ impl Equations {
             at(s).is_like(&at(s + period), sizes, period)
         };
         let ticks_again = |(program, ticks): &(Program, f64)| {
-            let mut own = vec![f64::NAN; 1 + self.active.len()];
-            program.with(&draft.parameters).run(f64::NAN, &[], &mut own);
-            (period - ticks * own[0]).abs() <= ZERO * period
+            let own = self.period(program, &draft.parameters)[0];
+            (period - ticks * own).abs() <= ZERO * period
         };
         self.clocks.is_empty()
             || self.clocks.iter().all(ticks_again)

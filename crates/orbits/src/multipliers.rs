@@ -18,12 +18,11 @@ pub(crate) fn multipliers(
     matrix: &DMatrix<f64>,
     trivial: Option<&DVector<f64>>,
 ) -> Option<Vec<[f64; 2]>> {
-    let own = match trivial {
+    let mut own = match trivial {
         Some(direction) if direction.amax() > 0.0 => divided(matrix, direction),
         _ => matrix.clone(),
     };
     let all = own.nrows();
-    let mut own = own;
     // Zeros in a chain would be found as small numbers: only what is in the range is kept.
     while own.nrows() > 0 {
         let range = range(&own, RANK);

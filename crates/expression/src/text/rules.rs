@@ -3,7 +3,7 @@
 use stickslip_solver::Direction;
 
 use super::TextError;
-use super::formula::Truth;
+use super::condition::Truth;
 use super::reader::Reader;
 use super::tokens::Token;
 use crate::graph::{Binary, Variable};

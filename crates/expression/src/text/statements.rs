@@ -2,7 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::formula::{Truth, is_function};
+use super::condition::Truth;
+use super::formula::is_function;
 use super::reader::{RESERVED, Reader, Statement};
 use super::tokens::{Token, tokens};
 use super::{TextError, names};

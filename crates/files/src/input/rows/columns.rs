@@ -83,8 +83,8 @@ impl Columns {
                 plain.replace('_', "-")
             ));
         }
-        let own = self.parameters.iter().map(|parameter| parameter.name());
-        match own.into_iter().find(|own| plain == *own && name != *own) {
+        let mut known = self.parameters.iter().map(|parameter| parameter.name());
+        match known.find(|own| plain == *own && name != *own) {
             Some(own) => Err(format!("column {name} is not read; expected {own}, or another name")),
             None => Ok(()),
         }
