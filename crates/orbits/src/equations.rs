@@ -375,28 +375,6 @@ impl Equations {
         flown.map(|it| it.state).map_err(|error| OrbitError::Run { segment: i, error })
     }
 
-    /// Whether nothing moves along an orbit by more than a part of its size in the first draft, and
-    /// the time is not explicit: then what repeats is a point.
-    pub fn is_point(&self, draft: &Draft, ends: &[End], part: f64) -> Result<bool, OrbitError> {
-        let first = &draft.states[0];
-        let stays = |state: &[f64]| {
-            let mut parts = state.iter().zip(first).zip(self.sizes.iter());
-            parts.all(|((x, y), size)| (x - y).abs() <= part * size)
-        };
-        let ends = ends.iter().map(|end| &end.flown.state);
-        if !self.clocks.is_empty() || !draft.states.iter().chain(ends).all(|it| stays(it)) {
-            return Ok(false);
-        }
-        for (i, duration) in draft.durations.iter().enumerate() {
-            for share in [0.25, 0.5, 0.75] {
-                if !stays(&self.within(draft, i, share * duration)?) {
-                    return Ok(false);
-                }
-            }
-        }
-        Ok(true)
-    }
-
     /// Whether what depends on the time is the same one period later, at both ends of segments, and
     /// all clocks tick again.
     pub fn repeats(&self, draft: &Draft, ends: &[End]) -> bool {

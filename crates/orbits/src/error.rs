@@ -99,15 +99,6 @@ pub enum OrbitError {
         /// The least one.
         least: f64,
     },
-    /// The search leads to a point at which nothing moves.
-    #[error(
-        "the guess leads to a point: nothing moves there by more than {part:e} of its size in the \
-         guess; expected a start nearer to an orbit"
-    )]
-    Point {
-        /// What counts as a motion, of the size of a component.
-        part: f64,
-    },
 }
 
 impl OrbitError {

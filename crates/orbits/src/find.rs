@@ -16,8 +16,6 @@ use crate::watch::OrbitWatch;
 
 /// Steps of the search for the events of a guess.
 const GUESS_STEPS: usize = 100_000;
-/// What moves by no more than this part of its size in the guess does not move.
-const STILL: f64 = 1e-8;
 /// The least period, of the largest time of the guess.
 const LEAST_PERIOD: f64 = 1e-7;
 
@@ -269,9 +267,6 @@ impl Orbits {
         let (period, least) = (found.period(), LEAST_PERIOD * latest);
         if period.is_nan() || period <= least {
             return Err(OrbitError::NoLength { period, least });
-        }
-        if equations.is_point(&found, &evaluation.ends, STILL)? {
-            return Err(OrbitError::Point { part: STILL });
         }
         self.orbit(&equations, &found, &evaluation, zero.error)
     }

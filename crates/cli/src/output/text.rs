@@ -176,18 +176,14 @@ pub fn work(out: &mut dyn Write, statistics: &Statistics) -> io::Result<()> {
 
 /// Writes names on the left, with their values after them.
 pub fn pairs(out: &mut dyn Write, lines: &[(&str, String)]) -> io::Result<()> {
-    let width = lines.iter().map(|(name, _)| width_of(name)).max().unwrap_or(0);
+    let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     lines.iter().try_for_each(|(name, value)| writeln!(out, "{name:<width$}  {value}"))
-}
-
-/// The number of characters of a text, up to the widest that can be formatted.
-fn width_of(text: &str) -> usize {
-    text.chars().count().min(usize::from(u16::MAX))
 }
 
 /// Writes columns: the first is aligned to the left, the others to the right.
 pub fn aligned<const N: usize>(out: &mut dyn Write, rows: &[[String; N]]) -> io::Result<()> {
-    let width = |column: usize| rows.iter().map(|row| width_of(&row[column])).max().unwrap_or(0);
+    let width =
+        |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; N] = std::array::from_fn(width);
     for row in rows {
         write!(out, "{:<width$}", row[0], width = widths[0])?;

@@ -285,15 +285,9 @@ impl<'a> Reader<'a> {
         }
         // What is the same in all modes is read once.
         let (mut equations, mut rules, mut after_rule) = (Vec::new(), Vec::new(), false);
-        let (mut surfaces, mut own) = (Vec::new(), HashSet::new());
+        let mut surfaces = Vec::new();
         for statement in shared {
-            let kind = self.kind(&statement)?;
-            if let Kind::Slope(name) = kind
-                && !own.insert(self.component(name)?)
-            {
-                return Err(self.error(format!("`{name}` has two equations")));
-            }
-            match kind {
+            match self.kind(&statement)? {
                 Kind::Name(name) if self.depends_on_mode(&statement) => {
                     self.free(name, statement.start)?;
                     self.by_mode.insert(name, statement);
@@ -509,9 +503,6 @@ impl<'a> Reader<'a> {
     /// `start in mode at 0`, `start if condition in one else other`, `end = 10`.
     fn bound(&mut self) -> Result<(), TextError> {
         if self.takes_word("end") {
-            if self.system.end.is_some() {
-                return Err(self.error("the end is given twice".to_owned()));
-            }
             self.expect("=")?;
             let at = self.next;
             let end = self.number()?;

@@ -55,8 +55,6 @@ fn places_and_hints() {
     refused(&with("speed' = 1\nend = speed"), 5, 7, "numbers and parameters alone");
     refused(&with("speed' = 1\nstart in nowhere"), 5, 10, "no mode `nowhere`");
     refused(&with("mode a\nspeed' = 1\nspeed' = 2"), 6, 1, "two equations");
-    refused(&with("speed' = 1\nspeed' = 2"), 5, 1, "two equations");
-    refused(&with("speed' = 1\nend = 2\nend = 3"), 6, 5, "given twice");
     refused(&with("speed' = polygon(t)"), 4, 19, "has 0 points; expected two or more");
     refused(&with("speed' = spline(t, 0: 1)"), 4, 24, "has 1 points; expected two or more");
     refused(&with("speed' = spline(t, 0: 1, 0: 2)"), 4, 26, "0 is not above 0");

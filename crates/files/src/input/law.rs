@@ -19,9 +19,9 @@ pub fn permits(law: Option<&str>, what: &str, damping: f64) -> Result<(), FileEr
     match law.and_then(presets::find) {
         Some(preset) if damping != 0.0 && !preset.tangential_damping => {
             Err(FileError::Option(format!(
-                "{what} {damping:?} has no meaning in the law {}; expected 0, or a file of the law \
-                 that is meant",
-                preset.name
+                "{what} {damping:?} has no meaning in the law {}: {}; expected 0, or a file of the \
+                 law that is meant",
+                preset.name, preset.checked
             )))
         }
         _ => Ok(()),

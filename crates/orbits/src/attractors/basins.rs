@@ -14,9 +14,8 @@ use crate::watch::Watched;
 /// How much two states of one attractor may differ, of the largest value of the component in the
 /// second halves of runs that settle.
 const SAME: f64 = 1e-3;
-/// What is smaller at last, of its largest value, has died out. The error of runs, 1e-10, is then
-/// far below what two states of one attractor may differ by.
-const GONE: f64 = 1e-6;
+/// What is smaller at last, of its largest value, has died out.
+const GONE: f64 = 1e-9;
 /// The greatest number of runs.
 const MOST_RUNS: usize = 1 << 24;
 

@@ -257,23 +257,3 @@ fn regions_refuse_what_they_cannot_follow() {
     let exact = RegionOptions { tolerance: 0.0, ..usual };
     assert!(refused([3, 4], window, &exact).contains("tolerance"));
 }
-
-/// A focus repeats too, after any time, and is no orbit.
-#[test]
-fn points_are_no_orbits() {
-    let top = "when v falls through 0 \"top\"\nend = 20";
-    let circuit = format!("state x = 2, v = 1\nx' = v\nv' = (1 - x^2)*v - x\n{top}");
-    let found = message_of(&circuit, &["top"]);
-    let is_orbit = |period: &f64| (period - 6.663286859).abs() < 1e-8;
-    match &found {
-        Ok(period) => assert!(is_orbit(period), "{period}"),
-        Err(said) => assert!(said.contains("leads to a point"), "{said}"),
-    }
-    let damped = format!("state x = 2, v = 1\nx' = v\nv' = -x - 0.1*v\n{top}");
-    let said = message(&damped, &["top"]);
-    assert!(said.contains("leads to a point") || said.starts_with("no orbit"), "{said}");
-    let pendulum = format!("state x = 0, v = 1\nx' = v\nv' = -sin(x)\n{top}");
-    let system = System::parse(&pendulum).expect("a system");
-    let settled = Orbits::new(&system).expect("orbits").settled(&[], &Guess::default(), 100.0);
-    assert!(settled.as_ref().map_or(true, |orbit| orbit.period > 6.0), "{settled:?}");
-}

@@ -31,7 +31,7 @@ use super::CollisionPlane;
 use crate::label::{CollisionEvent, CollisionLabel};
 
 /// What is added to the place of a beginning in its list, where it stands for a guard in the name
-/// of a margin. Systems with adhesion have the most guards.
+/// of a margin.
 const BEGINS: usize = adhesive::GUARDS;
 /// The first number that stands for nothing in the names of margins.
 pub(super) const BEYOND_GUARDS: usize = BEGINS + BEGINNINGS.len();
