@@ -134,9 +134,9 @@ function terms(law: string): string {
   return `**stickslip.laws()["${name}"].law${limited ? `, "${limited}": True` : ""}`;
 }
 
-/** Whether boundaries are traced: with decaying friction they are not. */
+/** Whether boundaries are traced: with decaying friction and with adhesion they are not. */
 export function isTraced(state: State): boolean {
-  return state.axes === "velocities" || !decays(state);
+  return state.axes === "velocities" || !(decays(state) || isAdhesive(state.law));
 }
 
 /** Whether friction decays with the velocity. */

@@ -49,6 +49,16 @@ impl AdhesiveContact {
         Self { contact, equations, beginning, reversals: false }
     }
 
+    /// How the contact starts.
+    pub fn beginning(&self) -> Beginning {
+        self.beginning
+    }
+
+    /// See [`Contact::start_margin`].
+    pub(crate) fn start_margin(&self) -> Option<f64> {
+        Equations::new(&self.contact).start_room(self.contact.psi())
+    }
+
     /// See [`Contact::start_layer`]: limit and dashpot are constant, and the reset spring grows as
     /// the radius.
     pub(crate) fn start_layer(&self) -> Option<f64> {
@@ -56,34 +66,9 @@ impl AdhesiveContact {
         let overturned = self.beginning == Beginning::Overturned;
         overturned.then(|| ((excess + 1.0) / (excess - 1.0)).powi(2))
     }
-}
 
-impl ContactSystem for AdhesiveContact {
-    fn of(contact: Contact) -> Self {
-        Self::new(contact)
-    }
-
-    fn contact(&self) -> Contact {
-        self.contact
-    }
-
-    fn with_reversals(self) -> Self {
-        Self { reversals: true, ..self }
-    }
-
-    fn beginning(&self) -> Beginning {
-        self.beginning
-    }
-
-    fn beginning_with(self, beginning: Beginning) -> Self {
-        Self { beginning, ..self }
-    }
-
-    fn beginning_margins(&self) -> [Option<f64>; 2] {
-        Equations::new(&self.contact).beginning_margins(self.contact.psi())
-    }
-
-    fn after(&self, mode: ContactMode, guard: usize, _slips: bool) -> ContactMode {
+    /// The mode that follows `mode` where `guard` fires.
+    fn after(mode: ContactMode, guard: usize) -> ContactMode {
         let progress = ModeProgress::Switched;
         match (guard, mode.regime) {
             (END | HELD | REVERSAL, _) => mode,
@@ -98,6 +83,16 @@ impl ContactSystem for AdhesiveContact {
             (_, Regime::Stick) => ContactMode { regime: Regime::Slip, progress, ..mode },
             (_, Regime::Slip) => ContactMode { regime: Regime::Stick, progress, ..mode },
         }
+    }
+}
+
+impl ContactSystem for AdhesiveContact {
+    fn contact(&self) -> Contact {
+        self.contact
+    }
+
+    fn with_reversals(self) -> Self {
+        Self { reversals: true, ..self }
     }
 
     fn first(&self) -> ContactMode {
@@ -216,7 +211,7 @@ impl ReadableSystem<STATE, GUARDS> for AdhesiveContact {
         _s: f64,
         y: &State<STATE>,
     ) -> (ContactMode, State<STATE>) {
-        let next = self.after(mode, guard, false);
+        let next = Self::after(mode, guard);
         match guard {
             SAME_SIDE | OTHER_SIDE => (next, self.equations.enter(next, array(y)).into()),
             CREST => {

@@ -160,6 +160,11 @@ impl GeneralContact {
         Self { contact, equations, beginning, reversals: false }
     }
 
+    /// How the contact starts.
+    pub fn beginning(&self) -> Beginning {
+        self.beginning
+    }
+
     /// See [`Contact::start_layer`].
     pub(crate) fn start_layer(&self) -> Option<f64> {
         let e = self.equations.exponents;
@@ -173,10 +178,32 @@ impl GeneralContact {
         Some(((excess + 1.0) / (excess - 1.0)).powf(power))
     }
 
+    /// The same system with another start, for margins that are followed beyond the contacts that
+    /// have them.
+    pub fn beginning_with(self, beginning: Beginning) -> Self {
+        Self { beginning, ..self }
+    }
+
+    /// The numbers whose signs decide how the contact starts: one minus the ratio of tangential
+    /// force and limit, if both grow alike, and the rate at which the spring exceeds the limit, if
+    /// it may fall behind.
+    pub fn beginning_margins(&self) -> [Option<f64>; 2] {
+        Equations::new(&self.contact).beginning_margins(self.contact.psi())
+    }
+
     /// The part of the overlap that pushes: x, but x − x₀ while a hysteretic force falls.
     pub fn compression(&self, y: &State<STATE>) -> f64 {
         // Where a contact ends, rounding may make u negative.
         y[U].max(0.0).powi(i32::from(self.equations.exponents.n))
+    }
+
+    /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
+    /// at F = 0, its limit falls below every spring before, but the slip that follows may be
+    /// shorter than rounding.
+    pub fn lacks_slip(&self, mode: ContactMode) -> bool {
+        let vanishes =
+            self.equations.exponents.damped && self.contact.law().end == ContactEnd::Force;
+        vanishes && mode.regime == Regime::Stick && !self.equations.is_frictionless()
     }
 
     /// Whether an attracting tail follows where the normal force vanishes.
@@ -185,39 +212,9 @@ impl GeneralContact {
         self.equations.exponents.damped && end == ContactEnd::Overlap && !limit_damping
     }
 
-    /// How much faster than the limit the spring leaves it where attraction begins in a slip phase.
-    fn excess_in_tail(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
-        let tail = self.after(mode, END, true);
-        self.equations.guards(tail, array(y))[SAME_SIDE]
-    }
-}
-
-impl ContactSystem for GeneralContact {
-    fn of(contact: Contact) -> Self {
-        Self::new(contact)
-    }
-
-    fn contact(&self) -> Contact {
-        self.contact
-    }
-
-    fn with_reversals(self) -> Self {
-        Self { reversals: true, ..self }
-    }
-
-    fn beginning(&self) -> Beginning {
-        self.beginning
-    }
-
-    fn beginning_with(self, beginning: Beginning) -> Self {
-        Self { beginning, ..self }
-    }
-
-    fn beginning_margins(&self) -> [Option<f64>; 2] {
-        Equations::new(&self.contact).beginning_margins(self.contact.psi())
-    }
-
-    fn after(&self, mode: ContactMode, guard: usize, slips: bool) -> ContactMode {
+    /// The mode that follows `mode` where `guard` fires. Where attraction begins, slip goes on if
+    /// it `slips`.
+    pub fn after(&self, mode: ContactMode, guard: usize, slips: bool) -> ContactMode {
         let (regime, side, progress) = match (guard, mode.regime) {
             (REVERSAL, _) => {
                 let heading = mode.heading.opposite();
@@ -247,10 +244,20 @@ impl ContactSystem for GeneralContact {
         ContactMode { regime, side, progress, ..mode }
     }
 
-    fn lacks_slip(&self, mode: ContactMode) -> bool {
-        let vanishes =
-            self.equations.exponents.damped && self.contact.law().end == ContactEnd::Force;
-        vanishes && mode.regime == Regime::Stick && !self.equations.is_frictionless()
+    /// How much faster than the limit the spring leaves it where attraction begins in a slip phase.
+    fn excess_in_tail(&self, mode: ContactMode, y: &State<STATE>) -> f64 {
+        let tail = self.after(mode, END, true);
+        self.equations.guards(tail, array(y))[SAME_SIDE]
+    }
+}
+
+impl ContactSystem for GeneralContact {
+    fn with_reversals(self) -> Self {
+        Self { reversals: true, ..self }
+    }
+
+    fn contact(&self) -> Contact {
+        self.contact
     }
 
     fn first(&self) -> ContactMode {

@@ -201,7 +201,7 @@ impl CoulombTest {
 /// of that depends on the time step, and has no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Friction {
     /// μ_d/μ_s, from 0 to 1.
     pub dynamic: f64,

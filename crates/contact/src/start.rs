@@ -2,7 +2,7 @@
 
 use crate::adhesive::AdhesiveContact;
 use crate::contact::Contact;
-use crate::general::{ContactSystem, GeneralContact};
+use crate::general::GeneralContact;
 
 impl Contact {
     /// How badly the start of contact is conditioned: `None` unless the dashpot exceeds the limit
@@ -51,9 +51,7 @@ impl Contact {
     pub fn start_margin(&self) -> Option<f64> {
         match self {
             _ if self.obeys_paper() => None,
-            _ if self.law().normal.is_adhesive() => {
-                AdhesiveContact::new(*self).beginning_margins()[0]
-            }
+            _ if self.law().normal.is_adhesive() => AdhesiveContact::new(*self).start_margin(),
             _ => GeneralContact::new(*self).beginning_margins()[0],
         }
     }

@@ -34,7 +34,7 @@ impl System {
                 });
                 let named = named.collect::<Vec<_>>().join(", ");
                 format!(
-                    "{count} rules follow each other at t = {s:?}, and no end is in sight: {named}, \
+                    "{count} rules follow each other at t = {s}, and no end is in sight: {named}, \
                      again and again. They may contradict each other there, or the state has to \
                      slide along a surface"
                 )

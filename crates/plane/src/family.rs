@@ -3,9 +3,7 @@
 use stickslip_model::exact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_model::spheres::BodyPair;
-use stickslip_model::{
-    Collider, CollisionError, Contact, Damping, Engine, InvalidValue, Law, Normal,
-};
+use stickslip_model::{CollisionError, Contact, Damping, Engine, InvalidValue, Law, Normal};
 use stickslip_solver::margin::Margin;
 use stickslip_solver::{Dop853, Options, Start};
 use stickslip_tracer::{
@@ -56,6 +54,9 @@ pub struct CollisionPlane {
     /// The contact at the lower ends of both parameters. All contacts have its law.
     first: Contact,
 }
+
+/// What is computed of a plane, where a law with adhesion is refused.
+const BOUNDARIES: &str = "boundaries are";
 
 /// What the two parameters of a plane are.
 #[derive(Clone, Copy, Debug)]
@@ -116,10 +117,12 @@ impl CollisionPlane {
         kappa: (f64, f64),
         psi: (f64, f64),
     ) -> Result<Self, InvalidValue> {
-        let first = oblique.at(1.0, psi.0)?;
-        let plane = Self::new(kappa, psi, first.damping())?;
-        let first = plane.first.with_law(first.law(), oblique.pair.tangential_damping())?;
-        Self { parameters: Parameters::Oblique(oblique), ..plane }.of_contacts_like(first)
+        let BodyPair { law, .. } = oblique.pair;
+        law.require_no_adhesion(BOUNDARIES)?;
+        let damping = oblique.pair.tangential_damping();
+        let plane = Self::new(kappa, psi, oblique.at(1.0, psi.0)?.damping())?;
+        let parameters = Parameters::Oblique(oblique);
+        Ok(Self { parameters, ..plane.with_law(law, damping)? })
     }
 
     /// Impacts of a pair with normal and tangential velocities of the surfaces in m/s between two
@@ -141,16 +144,17 @@ impl CollisionPlane {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidValue`]: a velocity is not above 0, a value that no collision can have, or bodies
-    /// that stay together.
+    /// [`InvalidValue`]: a velocity is not above 0, a value that no collision can have, or a law
+    /// with adhesion.
     pub fn velocities(pair: BodyPair, sides: [Range; 2]) -> Result<Self, InvalidValue> {
+        pair.law.require_no_adhesion(BOUNDARIES)?;
         let [normal, tangential] = sides;
         let first = pair.impact(normal.low, tangential.low)?.contact;
         let chart = Chart::of_velocities(normal, tangential);
         let sheet = Sheet { sides, chart, integrated: !first.obeys_paper() };
         let plane = Self { sheet, parameters: Parameters::Velocities(pair), first };
         plane.corners().into_iter().try_for_each(|corner| plane.contact_at(corner).map(drop))?;
-        plane.of_contacts_like(first)
+        Ok(plane)
     }
 
     /// The same collisions in other traced coordinates.
@@ -161,28 +165,12 @@ impl CollisionPlane {
     /// The same collisions with another law.
     ///
     /// # Errors
-    /// [`InvalidValue`]: no collision has this law with the dampings, or bodies stay together.
+    /// [`InvalidValue`]: no collision has this law with the dampings, or it has adhesion.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidValue> {
-        self.of_contacts_like(self.first.with_law(law, tangential_damping)?)
-    }
-
-    /// The same plane, whose first contact is this one. Bodies with adhesion that stay together
-    /// have no end of contact, and so no boundaries that belong to it.
-    fn of_contacts_like(self, first: Contact) -> Result<Self, InvalidValue> {
+        law.require_no_adhesion(BOUNDARIES)?;
+        let first = self.first.with_law(law, tangential_damping)?;
         let sheet = Sheet { integrated: !first.obeys_paper(), ..self.sheet };
-        let plane = Self { sheet, first, ..self };
-        if !first.law().normal.is_adhesive() {
-            return Ok(plane);
-        }
-        let adheres =
-            |contact| Collider::deciding().collide(contact).is_ok_and(|found| found.adheres);
-        if plane.normal_motions().into_iter().any(adheres) {
-            let phrase = "has adhesion with which bodies stay together at an end of the window";
-            let expected = "less of it, less damping, or faster impacts: boundaries are computed \
-                            for bodies that part";
-            return Err(InvalidValue::phrase("the law", phrase, expected));
-        }
-        Ok(plane)
+        Ok(Self { sheet, first, ..self })
     }
 
     /// The names of the two parameters.

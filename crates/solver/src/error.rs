@@ -14,7 +14,7 @@ pub enum RunError {
     /// The end of the run does not lie after its start, in the direction of the run, or the start
     /// is not finite.
     #[error(
-        "cannot run from s = {from:?} to s = {to:?}: the end must lie after a finite start, or before \
+        "cannot run from s = {from} to s = {to}: the end must lie after a finite start, or before \
          it if the run goes backwards"
     )]
     Span {
@@ -25,7 +25,7 @@ pub enum RunError {
     },
     /// A state from which the run or one of its phases starts is not finite.
     #[error(
-        "component {component} of the state at s = {s:?}, where the run or a phase starts, is not \
+        "component {component} of the state at s = {s}, where the run or a phase starts, is not \
          finite"
     )]
     State {
@@ -35,7 +35,7 @@ pub enum RunError {
         component: usize,
     },
     /// The right-hand side is not finite.
-    #[error("the right-hand side is not finite near s = {s:?} (step {step})")]
+    #[error("the right-hand side is not finite near s = {s} (step {step})")]
     Field {
         /// Where the step started.
         s: f64,
@@ -43,7 +43,7 @@ pub enum RunError {
         step: usize,
     },
     /// The error exceeds the tolerance on every step that still moves the time.
-    #[error("the tolerance cannot be met at s = {s:?}: a step of {h:e} is too long (step {step})")]
+    #[error("the tolerance cannot be met at s = {s}: a step of {h:e} is too long (step {step})")]
     Tolerance {
         /// Where the step started.
         s: f64,
@@ -53,7 +53,7 @@ pub enum RunError {
         step: usize,
     },
     /// A guard is not a number. Guards are evaluated a little beyond their zeros too.
-    #[error("guard {guard} is not a number near s = {s:?}")]
+    #[error("guard {guard} is not a number near s = {s}")]
     GuardNotANumber {
         /// The guard's index.
         guard: usize,
@@ -63,7 +63,7 @@ pub enum RunError {
     /// A guard is zero throughout a step, so that its crossings have no meaning. A mode that does
     /// not use a guard returns [`Guard::OFF`](crate::Guard::OFF) for it.
     #[error(
-        "guard {guard} is zero on a whole step from s = {s:?}, or its rounding hides that it is not; \
+        "guard {guard} is zero on a whole step from s = {s}, or its rounding hides that it is not; \
          expected that a mode turns off a guard that it does not use, and a form without \
          cancellation, such as expm1(x) instead of exp(x) - 1"
     )]
@@ -76,7 +76,7 @@ pub enum RunError {
     /// The schedule of a clock is not valid: its period is not a finite number above 0, or its
     /// phase or a time is not a number.
     #[error(
-        "the schedule of a clock has no time after s = {s:?}; expected a period above 0 and times that \
+        "the schedule of a clock has no time after s = {s}; expected a period above 0 and times that \
          are numbers"
     )]
     Schedule {
@@ -87,7 +87,7 @@ pub enum RunError {
     /// ([`Options::max_at_one_instant`](crate::Options::max_at_one_instant)). Observers do not keep
     /// these transitions.
     #[error(
-        "{count} transitions follow each other at s = {s:?}, and no end is in sight: {}, again and \
+        "{count} transitions follow each other at s = {s}, and no end is in sight: {}, again and \
          again. Guards may contradict each other there, or the state has to slide along a surface",
         listed(cycle)
     )]
@@ -102,7 +102,7 @@ pub enum RunError {
     /// A guard has more structure than any step can resolve. It is not smooth there, or it starts
     /// from a zero of another order than [`Guard::from_zero`](crate::Guard::from_zero) declares.
     #[error(
-        "guard {guard} cannot be resolved near s = {s:?} by a step of {h:e}: it is not smooth there, \
+        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: it is not smooth there, \
          or starts from a zero of another order than was declared for it"
     )]
     GuardUnresolved {
@@ -115,7 +115,7 @@ pub enum RunError {
     },
     /// The run ended before it reached the end of its span or a terminal guard. Only
     /// [`Run::finished`](crate::Run::finished) makes this an error.
-    #[error("the run ended early, at s = {s:?}: {outcome:?}")]
+    #[error("the run ended early, at s = {s}: {outcome:?}")]
     Unfinished {
         /// Why the run ended.
         outcome: Outcome,

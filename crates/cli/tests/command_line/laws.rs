@@ -174,7 +174,6 @@ fn what_is_no_law_is_refused() {
     let directory = Workspace::new();
     directory.write("law.json", r#"{"normal": "hooke"}"#);
     directory.write("extra.json", r#"{"stiffness": 3}"#);
-    directory.write("half.json", r#"{"friction": {"dynamic": 0.5}}"#);
     let list = r#" ["hertz", "none", "constant", "force", false, false, "force"]"#;
     directory.write("list.json", list);
     for (law, expected, code) in [
@@ -183,7 +182,6 @@ fn what_is_no_law_is_refused() {
         ("GRAN/hertz", "perhaps gran/hertz/history", 2),
         ("law.json", "normal: unknown variant `hooke`, expected one of `linear`, `hertz`", 2),
         ("extra.json", "unknown field `stiffness`", 2),
-        ("half.json", "missing field `decay`", 2),
         ("list.json", "is a list; expected an object with named fields", 2),
         ("granular/hertz/tsuji/mindlin --damping 2.3", "never end", 2),
         ("yade/FrictPhys_CundallStrack --damping 0.1", "this law has no damping", 2),

@@ -97,8 +97,12 @@ impl Equations {
         (force > 0.0).then(|| 1.0 - force / self.limit(first))
     }
 
-    /// See [`ContactSystem::beginning_margins`](crate::general::ContactSystem::beginning_margins).
-    pub fn beginning_margins(&self, psi: f64) -> [Option<f64>; 2] {
+    /// How the contact starts.
+    pub fn beginning(&self, psi: f64) -> Beginning {
+        let begins_to_slip = self.start_room(psi).is_some_and(|room| room <= 0.0);
+        if !begins_to_slip {
+            return Beginning::Stick;
+        }
         let mode = ContactMode {
             regime: Regime::Slip,
             side: Side::Positive,
@@ -106,21 +110,16 @@ impl Equations {
             progress: ModeProgress::Touched,
             heading: Side::Positive,
         };
-        let room = self.start_room(psi);
         let soft = self.shape.starts_at_end() && self.powers(Stage::Main).0 > 0;
-        let may_fall_behind = room.is_some() && self.remembers() && !soft;
-        [room, may_fall_behind.then(|| self.stretching(mode, &self.start(psi)))]
-    }
-
-    /// How the contact starts.
-    pub fn beginning(&self, psi: f64) -> Beginning {
-        match self.beginning_margins(psi) {
-            [None, _] => Beginning::Stick,
-            [Some(room), _] if room > 0.0 => Beginning::Stick,
-            [_, Some(excess)] if excess < 0.0 => Beginning::Reset,
+        if !self.remembers() {
+            Beginning::Slip
+        } else if soft {
             // The spring stiffens from 0: what it was set to turns it over.
-            [_, None] if self.remembers() => Beginning::Overturned,
-            _ => Beginning::Slip,
+            Beginning::Overturned
+        } else if self.stretching(mode, &self.start(psi)) < 0.0 {
+            Beginning::Reset
+        } else {
+            Beginning::Slip
         }
     }
 

@@ -2,7 +2,7 @@
 
 use stickslip_solver::State;
 
-use super::{Beginning, ContactMode, STATE};
+use super::{ContactMode, STATE};
 use crate::contact::Contact;
 
 /// A contact with the components and modes of [`general`](crate::general): one of any law, or one
@@ -14,33 +14,6 @@ pub trait ContactSystem: Copy {
     /// The same system, with an event at every reversal of the tangential velocity.
     #[must_use]
     fn with_reversals(self) -> Self;
-
-    /// The system of one contact, whose law has adhesion or not, as the system.
-    fn of(contact: Contact) -> Self;
-
-    /// How the contact starts.
-    fn beginning(&self) -> Beginning;
-
-    /// The same system with another start, for margins that are followed beyond the contacts that
-    /// have them.
-    #[must_use]
-    fn beginning_with(self, beginning: Beginning) -> Self;
-
-    /// The numbers whose signs decide how the contact starts: one minus the ratio of tangential
-    /// force and limit, if both grow alike, and the rate at which the spring exceeds the limit, if
-    /// it may fall behind.
-    fn beginning_margins(&self) -> [Option<f64>; 2];
-
-    /// The mode that follows `mode` where `guard` fires. Where attraction begins, slip goes on if
-    /// it `slips`.
-    fn after(&self, mode: ContactMode, guard: usize, slips: bool) -> ContactMode;
-
-    /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
-    /// at F = 0, its limit falls below every spring before, but the slip that follows may be
-    /// shorter than rounding.
-    fn lacks_slip(&self, _mode: ContactMode) -> bool {
-        false
-    }
 
     /// The mode in which the contact starts.
     fn first(&self) -> ContactMode;

@@ -118,13 +118,12 @@ fn number(text: &str, offset: usize) -> Result<(Token<'_>, usize), TextError> {
             format!("`{written}` is followed by a letter; expected an operator, as in 2*x");
         return Err(TextError::at(text, offset, message));
     }
-    let digits = written.split(['e', 'E']).next().unwrap_or_default();
-    let is_zero = !digits.contains(|c: char| ('1'..='9').contains(&c));
-    let message = match written.parse::<f64>() {
-        Ok(0.0) if !is_zero => format!("{written} is too small; expected 0, or 5e-324 and above"),
-        Ok(value) if value.is_finite() => return Ok((Token::Number(value), length)),
-        Ok(_) => format!("{written} is too large; expected a number up to 1.7e308"),
-        Err(_) => format!("`{written}` is not a number"),
-    };
-    Err(TextError::at(text, offset, message))
+    match written.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok((Token::Number(value), length)),
+        Ok(_) => {
+            let message = format!("{written} is too large; expected a number up to 1.7e308");
+            Err(TextError::at(text, offset, message))
+        }
+        Err(_) => Err(TextError::at(text, offset, format!("`{written}` is not a number"))),
+    }
 }

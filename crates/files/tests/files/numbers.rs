@@ -35,8 +35,6 @@ fn everything_else_is_refused() {
         ("1e300/1e-300", "not finite"),
         ("1/inf", "not finite"),
         ("2/0", "division by 0"),
-        ("1e-400", "too small for a number of 64 bits"),
-        ("1e-200/1e200", "too small for a number of 64 bits"),
     ] {
         assert_eq!(parse(text), Err(expected), "{text}");
     }

@@ -1,6 +1,6 @@
 //! Contacts on the border between two ways to start, to switch or to end.
 
-use stickslip_model::general::{ContactSystem, GeneralContact};
+use stickslip_model::general::GeneralContact;
 use stickslip_model::{
     Collider, Contact, ContactEnd, Damping, HistoryOf, Law, Regime, Tangential, presets,
 };

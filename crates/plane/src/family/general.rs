@@ -1,5 +1,4 @@
-//! Collisions with any contact law, with adhesion or without, as a family that the tracer can
-//! follow.
+//! Collisions with any contact law, as a family that the tracer can follow.
 //!
 //! The label of a run says how the contact begins, which guards fire, and whether slip goes on
 //! where the normal force begins to attract. The first exit in the name of a margin is not an exit
@@ -11,20 +10,15 @@
 //! end would take as many steps as a run may. The normal motion does not depend on the tangential
 //! one and is the same at all points of a plane, so its end is known beforehand.
 
-use std::marker::PhantomData;
-
-use stickslip_model::adhesive::{self, AdhesiveContact, HELD};
 use stickslip_model::general::{
-    self, Beginning, CREST, ContactMode, ContactSystem, GeneralContact, REVERSAL, STATE,
+    Beginning, CREST, ContactMode, ContactSystem, GUARDS, GeneralContact, REVERSAL, STATE,
 };
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::margin::{
     Exit, FollowedRun, Margin, Margins, Place, follow, margin, margins,
 };
-use stickslip_solver::{
-    Dop853, HybridSystem, Observer, Options, Outcome, Run, Start, State, SwitchEvent, run,
-};
+use stickslip_solver::{Dop853, Observer, Options, Outcome, Run, Start, State, SwitchEvent, run};
 use stickslip_tracer::{FreeRun, Point};
 
 use super::CollisionPlane;
@@ -32,7 +26,7 @@ use crate::label::{CollisionEvent, CollisionLabel};
 
 /// What is added to the place of a beginning in its list, where it stands for a guard in the name
 /// of a margin.
-const BEGINS: usize = adhesive::GUARDS;
+const BEGINS: usize = GUARDS + 1;
 /// The first number that stands for nothing in the names of margins.
 pub(super) const BEYOND_GUARDS: usize = BEGINS + BEGINNINGS.len();
 
@@ -50,86 +44,23 @@ const LONGEST: usize = 20_000;
 
 /// Collisions with any law, integrated.
 #[derive(Clone, Copy, Debug)]
-pub enum GeneralFamily {
-    /// Those whose law has no adhesion.
-    Plain(ContactFamily<GeneralContact, { general::GUARDS }>),
-    /// Those whose law has adhesion, and whose bodies part.
-    Adhesive(ContactFamily<AdhesiveContact, { adhesive::GUARDS }>),
-}
-
-/// The same call for both kinds of systems.
-macro_rules! both {
-    ($family:expr, $it:ident => $call:expr) => {
-        match $family {
-            GeneralFamily::Plain($it) => $call,
-            GeneralFamily::Adhesive($it) => $call,
-        }
-    };
-}
-
-impl GeneralFamily {
-    /// The family, with options for every run.
-    pub(super) fn new(plane: &CollisionPlane, options: Options) -> Self {
-        if plane.first().law().normal.is_adhesive() {
-            Self::Adhesive(ContactFamily::new(plane, options))
-        } else {
-            Self::Plain(ContactFamily::new(plane, options))
-        }
-    }
-
-    /// The label of the run at a point. Collisions that cannot be computed have one of their own.
-    pub(super) fn label(&self, point: &Point) -> CollisionLabel {
-        both!(self, it => it.label(point))
-    }
-
-    /// The label of the run at a point, and its ε_t.
-    ///
-    /// On a boundary, a last phase can be as short as rounding, so that its guards cannot be looked
-    /// at. Then the run beside the point counts, at a distance far below the accuracy of traces.
-    pub(super) fn labelled(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
-        both!(self, it => it.labelled(point))
-    }
-
-    /// ε_t at a point, with the itinerary prescribed that `exits` name, and the exits there.
-    pub(super) fn prescribed(&self, point: &Point, exits: &[Exit]) -> Option<(Vec<Exit>, f64)> {
-        both!(self, it => it.prescribed(point, exits))
-    }
-
-    /// The label of the run at a point, and its margins.
-    pub(super) fn free_run(&self, point: &Point) -> FreeRun<CollisionLabel, Margin> {
-        both!(self, it => it.free_run(point))
-    }
-
-    /// The value of a margin at a point, and its name there.
-    pub(super) fn near_miss(&self, point: &Point, which: &Margin) -> Option<(Margin, f64)> {
-        both!(self, it => it.near_miss(point, which))
-    }
-
-    /// The value of a margin at a point.
-    pub(super) fn margin(&self, point: &Point, which: &Margin) -> Option<f64> {
-        self.near_miss(point, which).map(|(_, value)| value)
-    }
-}
-
-/// Collisions whose system is of one kind.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactFamily<S, const G: usize> {
-    plane: CollisionPlane,
-    options: Options,
+pub struct GeneralFamily {
+    pub(super) plane: CollisionPlane,
+    pub(super) options: Options,
     /// Where runs stop that have not come to the end of contact. The normal motion, and with it
     /// the end, is the same at all points of the plane, or between two.
     span: f64,
-    kind: PhantomData<S>,
 }
+
+/// What the runs of the family are made of.
+type System = (GeneralContact, Start<ContactMode, STATE>);
 
 /// Where else a run is looked at that fails, in parts of what rounding leaves open of a place.
 const BESIDE: [(f64, f64); 4] = [(10.0, 0.0), (-10.0, 0.0), (0.0, 10.0), (0.0, -10.0)];
 
-impl<S, const G: usize> ContactFamily<S, G>
-where
-    S: ContactSystem + HybridSystem<STATE, G, Mode = ContactMode>,
-{
-    fn new(plane: &CollisionPlane, options: Options) -> Self {
+impl GeneralFamily {
+    /// The family, with options for every run.
+    pub(super) fn new(plane: &CollisionPlane, options: Options) -> Self {
         let motions = plane.normal_motions();
         let stiffest = motions[0].kappa().max(motions[1].kappa());
         let oscillations = stiffest.sqrt().min(1e5);
@@ -137,7 +68,7 @@ where
         let mut max_steps = 1000 + (100.0 * oscillations) as usize;
         let (mut span, longest) = (0.0_f64, Options { max_steps: LONGEST, ..options });
         for contact in motions {
-            let (system, start) = started(S::of(contact));
+            let (system, start) = started(&GeneralContact::new(contact));
             match run(Dop853, &system, start, f64::INFINITY, &longest, &mut ()) {
                 Ok(Run { outcome: Outcome::EndedByGuard { .. }, s, statistics, .. }) => {
                     span = span.max(BEYOND * s);
@@ -147,26 +78,30 @@ where
                 _ => span = f64::INFINITY,
             }
         }
-        let options = Options { max_steps, ..options };
-        Self { plane: *plane, options, span, kind: PhantomData }
+        Self { plane: *plane, options: Options { max_steps, ..options }, span }
     }
 
-    fn system(&self, point: &Point) -> S {
-        S::of(self.plane.contact_or_any(point))
+    fn system(&self, point: &Point) -> GeneralContact {
+        GeneralContact::new(self.plane.contact_or_any(point))
     }
 
-    fn label(&self, point: &Point) -> CollisionLabel {
+    /// The label of the run at a point. Collisions that cannot be computed have one of their own.
+    pub(super) fn label(&self, point: &Point) -> CollisionLabel {
         self.labelled(point).map_or_else(failed, |(label, _)| label)
     }
 
-    fn labelled(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
+    /// The label of the run at a point, and its ε_t.
+    ///
+    /// On a boundary, a last phase can be as short as rounding, so that its guards cannot be looked
+    /// at. Then the run beside the point counts, at a distance far below the accuracy of traces.
+    pub(super) fn labelled(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
         let errors = Point::from(self.plane.sheet().errors());
         let beside = |(x, y)| self.labelled_at(&(point + errors.component_mul(&Point::new(x, y))));
         self.labelled_at(point).or_else(|| BESIDE.into_iter().find_map(beside))
     }
 
     fn labelled_at(&self, point: &Point) -> Option<(CollisionLabel, f64)> {
-        let (system, start) = started(self.system(point));
+        let (system, start) = started(&self.system(point));
         let mut fired = Fired(vec![CollisionEvent::Begins(system.beginning())]);
         let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired).ok()?;
         if found.outcome != (Outcome::EndedByGuard { guard: END }) {
@@ -178,10 +113,11 @@ where
         Some((fired.0, restitution(&system, &found.state)))
     }
 
-    fn prescribed(&self, point: &Point, exits: &[Exit]) -> Option<(Vec<Exit>, f64)> {
+    /// ε_t at a point, with the itinerary prescribed that `exits` name, and the exits there.
+    pub(super) fn prescribed(&self, point: &Point, exits: &[Exit]) -> Option<(Vec<Exit>, f64)> {
         let (begins, exits) = exits.split_first()?;
         let system = self.system(point).beginning_with(BEGINNINGS[begins.guard - BEGINS]);
-        let (system, start) = started(system);
+        let (system, start) = started(&system);
         // A run that cannot follow the itinerary has no such end.
         let found = follow(Dop853, &system, start, self.span, &self.options, exits).ok()?;
         let FollowedRun { mut exits, run } = found?;
@@ -190,8 +126,9 @@ where
         ended.then(|| (exits, restitution(&system, &run.state)))
     }
 
-    fn free_run(&self, point: &Point) -> FreeRun<CollisionLabel, Margin> {
-        let (system, start) = started(self.system(point));
+    /// The label of the run at a point, and its margins.
+    pub(super) fn free_run(&self, point: &Point) -> FreeRun<CollisionLabel, Margin> {
+        let (system, start) = started(&self.system(point));
         // Where a last phase is as short as rounding, its guards cannot be looked at. The label is
         // known without them, and changes beside such a point need the margins of its neighbours.
         let Ok(found) = margins(Dop853, &system, start, self.span, &self.options) else {
@@ -208,7 +145,7 @@ where
         let longest = found.iter().map(|(margin, _)| &margin.exits).max_by_key(|exits| exits.len());
         let corners = longest.map_or_else(Vec::new, |exits| corners(&system, exits));
         for corner in corners {
-            if let Some((_, value)) = self.near_miss(point, &corner) {
+            if let Some(value) = self.margin(point, &corner) {
                 found.push((corner, value));
             }
         }
@@ -218,14 +155,15 @@ where
         FreeRun { label, margins: found }
     }
 
-    fn near_miss(&self, point: &Point, which: &Margin) -> Option<(Margin, f64)> {
+    /// The value of a margin at a point, and its name there.
+    pub(super) fn near_miss(&self, point: &Point, which: &Margin) -> Option<(Margin, f64)> {
         let system = self.system(point);
         let Some((begins, exits)) = which.exits.split_first() else {
             let Place::Start { derivative } = which.place else { return None };
             let value = system.beginning_margins().into_iter().nth(derivative as usize)?;
             return Some((which.clone(), value?));
         };
-        let (system, start) = started(system.beginning_with(begun_with(begins)));
+        let (system, start) = started(&system.beginning_with(begun_with(begins)));
         let inner = Margin { exits: exits.to_vec(), ..which.clone() };
         // A run that cannot follow the itinerary has no such margin.
         let found = margin(Dop853, &system, start, self.span, &self.options, &inner).ok()??;
@@ -233,6 +171,11 @@ where
             return None;
         }
         Some((begun(*begins, found.margin), found.value))
+    }
+
+    /// The value of a margin at a point.
+    pub(super) fn margin(&self, point: &Point, which: &Margin) -> Option<f64> {
+        self.near_miss(point, which).map(|(_, value)| value)
     }
 }
 
@@ -244,7 +187,7 @@ pub fn failed() -> CollisionLabel {
 /// Whether the itinerary changes where a margin vanishes, and not only the order of events.
 pub fn is_sure(margin: &Margin) -> bool {
     match margin.place {
-        _ if matches!(margin.guard, CREST | REVERSAL | HELD) => false,
+        _ if matches!(margin.guard, CREST | REVERSAL) => false,
         Place::Minimum { .. } | Place::Maximum { .. } | Place::End | Place::Branch(_) => true,
         Place::Exit(exit) => exit.guard == END,
         Place::Start { .. } => margin.exits.is_empty(),
@@ -254,17 +197,17 @@ pub fn is_sure(margin: &Margin) -> bool {
 }
 
 /// ε_t of a collision that ends in a state.
-fn restitution(system: &impl ContactSystem, end: &State<STATE>) -> f64 {
+fn restitution(system: &GeneralContact, end: &State<STATE>) -> f64 {
     system.velocity(end) / system.contact().psi()
 }
 
-fn started<S: ContactSystem>(system: S) -> (S, Start<ContactMode, STATE>) {
-    (system, Start { mode: system.first(), s: 0.0, state: system.start() })
+fn started(system: &GeneralContact) -> System {
+    (*system, Start { mode: system.first(), s: 0.0, state: system.start() })
 }
 
 /// The label of a free run from its margins. The sign of a margin says whether slip goes on where
 /// attraction begins. A last slip that is shorter than rounding does not show in the margins.
-fn known_label(found: &Margins, system: &impl ContactSystem) -> Option<CollisionLabel> {
+fn known_label(found: &Margins, system: &GeneralContact) -> Option<CollisionLabel> {
     if found.outcome != (Outcome::EndedByGuard { guard: END }) {
         return None;
     }
@@ -301,7 +244,7 @@ fn beginning(derivative: u32) -> Margin {
 /// The margins of stick phases that a slip follows with which the contact ends, or with which
 /// attraction begins: there the limit is zero, and the sign of the tangential force in a longer
 /// stick phase decides on which side the contact slips.
-fn corners(system: &impl ContactSystem, exits: &[Exit]) -> Vec<Margin> {
+fn corners(system: &GeneralContact, exits: &[Exit]) -> Vec<Margin> {
     let mut mode = system.first();
     let mut corners = Vec::new();
     for (place, exit) in exits.iter().enumerate().skip(1) {
@@ -347,19 +290,7 @@ pub fn phases(
     begins: Option<Beginning>,
     fired: impl Iterator<Item = (usize, bool)>,
 ) -> Vec<ContactMode> {
-    if contact.law().normal.is_adhesive() {
-        phases_of::<AdhesiveContact>(*contact, begins, fired)
-    } else {
-        phases_of::<GeneralContact>(*contact, begins, fired)
-    }
-}
-
-fn phases_of<S: ContactSystem>(
-    contact: Contact,
-    begins: Option<Beginning>,
-    fired: impl Iterator<Item = (usize, bool)>,
-) -> Vec<ContactMode> {
-    let mut system = S::of(contact);
+    let mut system = GeneralContact::new(*contact);
     if let Some(begins) = begins {
         system = system.beginning_with(begins);
     }

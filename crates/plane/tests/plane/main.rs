@@ -1,6 +1,5 @@
 //! Grids, sweeps and atlases of the crate, through its public interface.
 
-mod adhesive;
 mod atlas;
 #[cfg(feature = "serde")]
 mod document;

@@ -67,7 +67,7 @@ impl Equations {
         y
     }
 
-    /// See [`ContactSystem::beginning_margins`](crate::general::ContactSystem::beginning_margins).
+    /// See [`super::GeneralContact::beginning_margins`].
     pub fn beginning_margins(&self, psi: f64) -> [Option<f64>; 2] {
         let e = self.exponents;
         let (limit, force) = self.first_orders();
